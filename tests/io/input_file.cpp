@@ -13,12 +13,14 @@
 #include <doctest/doctest.h>
 #include <sys/stat.h>
 
+#include "support/file_errors.hpp"
 #include "support/generators.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace pulsecast::io {
 namespace {
 
+using support::contains;
 using support::TemporaryFolder;
 
 std::filesystem::path put(const TemporaryFolder& folder, const std::string& text) {
@@ -41,6 +43,12 @@ TEST_CASE("lines come without their ends") {
   CHECK(lines("\xEF\xBB\xBF"
               "a\n\xEF\xBB\xBF\n") == std::vector<std::string>{"a", "\xEF\xBB\xBF"});
   CHECK(lines("\n") == std::vector<std::string>{""});
+  CHECK(lines("a\r\r\nb\rc\n") == std::vector<std::string>{"a\r", "b\rc"});
+  for (const char* text : {"a\rb\r", "a\rb\n", "\xEF\xBB\xBFx\ry"})
+    CHECK(
+        contains(support::file_error([&] { (void)lines(text); }).problem(), "lines that end in CR alone: expected LF"));
+  for (const char* text : {"\xFF\xFEz", "\xFE\xFFz"})
+    CHECK(contains(support::file_error([&] { (void)lines(text); }).problem(), "is in UTF-16: expected UTF-8"));
 }
 
 TEST_CASE("an input file knows where it is") {

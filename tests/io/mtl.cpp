@@ -276,7 +276,12 @@ TEST_CASE("standard keys are limited or ignored with a note, and never refuse a 
                                          {"Ns 1e13", "takes 1e+12 for 1e13", {1, 1, 1}, 1e12},
                                          {"Ns many", "is ignored"},
                                          {"Ns 20 30", "has words after its numbers", {1, 1, 1}, 20},
-                                         {"illum 4\nNi 0", "glass is assumed"},
+                                         {"illum 4\nNi 0", "expected from 1 to 4; 1.5"},
+                                         {"pulsecast_interface pane 0.01\nNi 5", "expected from 1 to 4; 1.5"},
+                                         {"Kd 0.5 2 0.5", "beyond 0 to 1", {0.5, 1, 0.5}},
+                                         {"Ks 2", "beyond 0 to 1"},
+                                         {"Pm 1.5", "beyond 0 to 1"},
+                                         {"Tf -1", "beyond 0 to 1"},
                                          {"map_Kd", "names no picture"},
                                          {"map_d", "names no picture"}}) {
     CAPTURE(c.statement);

@@ -94,6 +94,15 @@ TEST_CASE("colours of vertices and maps of pictures are noted, and a weight of c
   }
 }
 
+TEST_CASE("lines that end in CR alone are told, in OBJ and in MTL files") {
+  CHECK(contains(Folder().error("v 0 0 0\rv 1 0 0\rv 1 1 0\rf 1 2 3\r").problem(), "lines that end in CR alone"));
+  CHECK(contains(Folder().error("# a\rv 0 0 0\r\nf 1 2 3\n").problem(), "lines that end in CR alone"));
+  CHECK(Folder().obj(corners + "f 1 2 3\r\r\nf 1 2 4\r").mesh.triangles.size() == 2);
+  const Folder folder;
+  folder.write("a.mtl", "newmtl a\rKd 1 1 1\r");
+  CHECK(contains(folder.error("mtllib a.mtl\n" + corners + "f 1 2 3\n").problem(), "lines that end in CR alone"));
+}
+
 TEST_CASE("a triangle is read as it stands") {
   const ObjModel model = Folder().obj("v 1.5 -2 3e1\nv +4 5 6\nv 7 8 9.25\nf 1 2 3\n");
   REQUIRE(model.mesh.triangles.size() == 1);

@@ -17,6 +17,7 @@
 
 #include "support/data_folder.hpp"
 #include "support/file_errors.hpp"
+#include "support/format_cases.hpp"
 #include "support/generators.hpp"
 #include "support/temporary_folder.hpp"
 
@@ -178,6 +179,38 @@ TEST_CASE("a file of AMAPVox is read as it stands") {
   const VoxelFile cubes = read_voxel_file(path, scaled);
   CHECK(cubes.voxels.scales.front() == doctest::Approx(std::sqrt(0.3065 / 2.5)).epsilon(1e-6).scale(0));
   CHECK(read_voxel_file(path, opaque).voxels.cells == file.voxels.cells);
+}
+
+TEST_CASE("each key and column of a voxel file is read or noted by its rule") {
+  const auto with = [](const std::string& key) {
+    return [=] {
+      return read("VOXEL SPACE\n#min_corner: 1 2 3 #res: 2 " + key + "\ni j k PadBVTotal\n0 0 1 2\n").warnings;
+    };
+  };
+  const auto checks = [](const auto& use) {
+    return [=] {
+      use();
+      return std::vector<std::string>{};
+    };
+  };
+  const std::vector<test::FormatCase> cases{
+      {"min_corner", checks([] {
+         CHECK(read(head + "0 0 0 1 0\n").voxels.corner == Vec3{1, 2, 3});
+       })},
+      {"max_corner", with("#max_corner: 5 6 9 #split: 2 2 3")},
+      {"split", checks([] { CHECK(error(head + "0 0 4 1 0\n").place() == "line 7, column 3"); })},
+      {"res", checks([] { CHECK(read(head + "0 0 0 1 0\n").voxels.edge == 0.5); })},
+      {"max_pad", checks([] { CHECK(read(head + "0 0 0 1 0\n").density_max == 2); })},
+      {"lad_type = spherical", with("#lad_type: Spherical")},
+      {"lad_type = *", with("#lad_type: Planophile")},
+      {"columns i, j, k", checks([] {
+         CHECK(read(head + "1 2 3 1 0\n").voxels.cells[0] == Cell{1, 2, 3});
+       })},
+      {"column PadBVTotal", checks([] { CHECK(read(head + "0 0 0 1 0\n").voxels.densities[0] == 1); })},
+      {"column transmittance", checks([] { CHECK(read(head + "0 0 0 1 0\n").transmittances[0] == 0); })},
+      {"*", with("#type: TLS")}};
+  test::check_rules(detail::vox_rules, cases);
+  CHECK(read(keys + "#lad_type: Planophile\ni j k PadBVTotal transmittance\n0 0 0 1 0\n", opaque).warnings.empty());
 }
 
 TEST_CASE("a last row without an end is read, with a warning") {

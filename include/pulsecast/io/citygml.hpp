@@ -130,6 +130,8 @@ class CityGmlImport {
         (largest_ > 0 && largest_ < 0.05 && farthest_ <= 360))
       fail("its coordinates are in degrees or geocentric, by '", name_,
            "' or its size: expected a projected system in metres");
+    if (code && is_between(systems_to_the_west, *code))
+      keep_rule(reference_rules, path_, "reference system", "axis to the west", scene_.warnings);
     if (code && !is_between(systems_in_metres, *code))
       scene_.warnings.push_back(
           warning(path_.string(), 0, "is in EPSG:", *code, ", which may be in feet: metres are assumed"));

@@ -45,6 +45,9 @@ class InputFile {
  public:
   static constexpr std::size_t block_size = std::size_t{1} << 20;  ///< limit of a line or `take` [byte]
 
+  static constexpr std::string_view cr_alone =
+      "has lines that end in CR alone: expected LF or CR LF, as tr '\\r' '\\n' makes them";  ///< problem
+
   /// `expected` content for messages, as in "a point cloud". @throws FileError if missing or empty
   InputFile(const std::filesystem::path& path, std::string_view expected) : path_(path.string()) {
     std::error_code ignored;
@@ -94,8 +97,16 @@ class InputFile {
     if (taken.empty()) return std::nullopt;
     ++line_;
     line_is_open_ = taken.back() != '\n';
+    if (line_ == 1) check_first(line);
     if (line_is_open_ && taken.size() == block_size) fail_at_line("is longer than ", block_size, " bytes");
     return line_ == 1 ? text::without_byte_order_mark(line) : line;
+  }
+
+  /// Refuses a first line that holds others, or is not in UTF-8.
+  void check_first(std::string_view line) const {
+    if (line.find_first_not_of('\r', line.find('\r')) != line.npos) fail(cr_alone);
+    if (line.starts_with("\xFF\xFE") || line.starts_with("\xFE\xFF"))
+      fail("is in UTF-16: expected UTF-8, as iconv -f UTF-16 makes it");
   }
 
   /// Rest of the file, without the byte order mark at its beginning.

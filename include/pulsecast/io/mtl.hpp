@@ -87,7 +87,14 @@ class MtlReader : private StatementBuffer {
       if (const auto share = given.empty() ? std::nullopt : number_in<double>(given[0]);
           share && *share != (keyword() == "d" ? 1 : 0))
         note("has no effect: the surface is opaque; map_d cuts holes, pulsecast_interface makes panes");
-    if (keyword() == "Kd" || keyword() == "Ks")
+    const bool is_colour = keyword() == "Kd" || keyword() == "Ks";
+    const auto is_beyond = [&](std::string_view word) {
+      const double number = number_in<double>(word).value_or(0);
+      return number > 1 || (number < 0 && !is_colour);
+    };
+    if ((is_colour || keyword() == "Tf" || keyword() == "Pm") && std::ranges::any_of(given, is_beyond))
+      note("has a number beyond 0 to 1: as a colour or a share of light, the nearest of these is taken");
+    if (is_colour)
       ready += standard_numbers(given, 3);
     else if (keyword() == "Ns")
       ready += standard_numbers(given, 1);
@@ -193,8 +200,7 @@ class MtlReader : private StatementBuffer {
   }
 
   void set_light(Material& made, const tinyobj::material_t& m, const auto& extra, const auto& warn) const {
-    if (!set_standard_light(made, m))
-      warn("Ni", "has the index Ni of a clear body out of range: expected from 1 to 4; glass is assumed");
+    set_standard_light(made, m);
     std::deque<std::string> texts;
     const auto words_of = [&](const char* key) {
       texts.push_back(extra(key));
@@ -205,6 +211,10 @@ class MtlReader : private StatementBuffer {
     if (const auto words = words_of("pulsecast_water"); !words.empty())
       made.smooth = water_for_lasers(m.name, words, warn);
     set_own_light(made, m, words_of);
+    const bool has_index = !extra("pulsecast_medium").empty() || !extra("pulsecast_water").empty();
+    if (made.smooth.inside.index > 1 && !has_index && (m.ior < 1 || m.ior > 4))
+      warn("Ni", "has the index Ni of a clear body out of range: expected from 1 to 4; ", made.smooth.inside.index,
+           " is assumed");
   }
 
   /// Water for the wavelength of all lasers; clear, with a warning, if there is none.

@@ -60,10 +60,26 @@ struct VoxelFile {
 #include <pulsecast/base/random.hpp>
 #include <pulsecast/io/detail/cell_numbers.hpp>
 #include <pulsecast/io/detail/text/table.hpp>
+#include <pulsecast/io/format_rules.hpp>
 
 namespace PULSECAST_NAMESPACE::io {
 
 namespace detail {
+
+/// Keys and columns of voxel files. Source: AMAPVox (Vincent et al. 2017).
+inline constexpr auto vox_rules = std::to_array<FormatRule>({
+    {"min_corner", FormatUse::read, "lowest corner of the grid"},
+    {"max_corner", FormatUse::read, "compared with the lowest corner, split and res"},
+    {"split", FormatUse::read, "number of voxels along each axis, which indices are below"},
+    {"res", FormatUse::read, "edge of the voxels, which are cubes"},
+    {"max_pad", FormatUse::read, "density of whole cubes, for scaled voxels"},
+    {"lad_type = spherical", FormatUse::read, "directions of leaves, as without a table (ladlut)"},
+    {"lad_type = *", FormatUse::noted, "directions of leaves are spherical, or by a table (ladlut)"},
+    {"columns i, j, k", FormatUse::read, "place of a voxel in the grid"},
+    {"column PadBVTotal", FormatUse::read, "density of the leaves in a voxel"},
+    {"column transmittance", FormatUse::read, "1 or NaN: without a cube, for opaque and scaled voxels"},
+    {"*", FormatUse::read, "nothing: other columns and keys tell how the voxels were measured"},
+});
 
 class VoxelFileReader {
  public:
@@ -101,6 +117,9 @@ class VoxelFileReader {
       std::erase(key, ' ');
       const std::string_view value = entry.substr(colon + 1);
       if (!given_.insert(key).second) table_.fail_here("'", key, "' stands a second time: expected each key once");
+      const bool has_angles = key == "lad_type" && settings_.use == VoxelUse::transmissive;
+      keep_rule(vox_rules, table_.path(), "key", has_angles ? key + " = " + text::lower(text::trimmed(value)) : key,
+                table_.warnings);
       if (key == "min_corner") {
         min_corner_ = vector(key, value);
       } else if (key == "max_corner") {
@@ -176,7 +195,7 @@ class VoxelFileReader {
               " at the distance of 'min_corner' from the origin");
     if (!max_corner_ || !split_) return;
     const Vec3 should = *min_corner_ + *split_ * *edge_;
-    if (max_norm(should - *max_corner_) > *edge_ / 2)
+    if (!is_within(should - *max_corner_, *edge_ / 2))
       table_.warn(0, "'max_corner' contradicts 'min_corner', 'split' and 'res': it is ignored");
   }
 
@@ -184,7 +203,7 @@ class VoxelFileReader {
     const std::vector<std::string_view>& cells = table_.cells();
     if (cells.size() < columns_) table_.fail_here("has ", cells.size(), " columns: expected ", columns_);
     const CellNumbers::Cell cell{index(0), index(1), index(2)};
-    if (!(max_norm(*min_corner_ + Vec3(cell[0], cell[1], cell[2]) * *edge_) <= max_number))
+    if (!is_within(*min_corner_ + Vec3(cell[0], cell[1], cell[2]) * *edge_, max_number))
       table_.fail_here("the voxel ", to_text(cell), " is beyond 1e12 m: expected coordinates up to 1e12 m");
     const double density = number(density_);
     const double transmittance = transmittance_ ? number(*transmittance_) : 0;

@@ -16,6 +16,7 @@
 #include <pulsecast/io/detail/raster_rules.hpp>
 #include <pulsecast/io/detail/reference_reader.hpp>
 #include <pulsecast/io/detail/trajectory/rules.hpp>
+#include <pulsecast/io/vox.hpp>
 
 using namespace pulsecast::io;
 
@@ -36,6 +37,7 @@ int main() {
   print("points: PLY, named columns", detail::point_rules);
   print("PTX", detail::ptx_rules);
   print("DAE, FBX", detail::mesh_rules);
+  print("AMAPVox", detail::vox_rules);
   print("GeoTIFF", detail::geotiff_rules);
   print("ASCII grid", detail::ascii_grid_rules);
   print("PNG heights", detail::png_rules);

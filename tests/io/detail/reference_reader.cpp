@@ -249,6 +249,32 @@ TEST_CASE("each rule of reference systems has one that is read, noted or refused
           {"text that is cut off", text("PROJCS[\"x\"")}});
 }
 
+TEST_CASE("axes to the west are noted once, by a code, a method or the text, with a database or without") {
+  const std::string begin = "PROJCS[\"x\"," + geographic + ",PROJECTION[\"", end = R"(,UNIT["metre",1])";
+  const auto esri = [&](const std::string& rest) { return by_text(begin + rest + end + "]").warnings; };
+  const auto coded = [](std::uint16_t code) { return by_keys({{{3072, 0, 1, code}, {3076, 0, 1, 9001}}}).warnings; };
+  const auto unknown = [](const SpatialReference&, const std::string&) -> SpatialReference {
+    throw FileError("EPSG", "", "has axes to the west and south");
+  };
+  for (const support::WithDatabase::Database database : {support::WithDatabase::Database(unknown), {}}) {
+    const support::WithDatabase with(database);
+    for (const std::uint16_t code :
+         std::initializer_list<std::uint16_t>{2046, 2053, 2055, 2065, 2221, 3053, 5513, 8352, 22279, 29385}) {
+      CAPTURE(code);
+      REQUIRE(coded(code).size() == 1);
+      CHECK(coded(code)[0].find("'axis to the west': x is taken as east") != std::string::npos);
+    }
+    for (const std::uint16_t code : std::initializer_list<std::uint16_t>{2056, 2066, 2222, 5514, 25832, 29386})
+      CHECK(coded(code).empty());
+  }
+  CHECK(by_keys({{{3072, 0, 1, 32767}, {3075, 0, 1, 27}, {3076, 0, 1, 9001}}}).warnings.size() == 1);
+  CHECK(esri("Transverse_Mercator_South_Orientated\"]").size() == 1);
+  CHECK(esri("Krovak\"],PARAMETER[\"XY_Plane_Rotation\",0.0]").size() == 1);
+  CHECK(esri("Krovak\"],PARAMETER[\"XY_Plane_Rotation\",90.0]").empty());
+  CHECK(by_text(begin + "Transverse_Mercator_South_Orientated\"]" + end + R"(,AXIS["Y",WEST],AXIS["X",SOUTH]])")
+            .warnings.size() == 1);
+}
+
 TEST_CASE("depths, degrees and units that nobody knows are refused, but for heights that a setting scales") {
   const std::string depths = "heights, not depths", degrees = "expected projected coordinates, not degrees";
   for (const std::string& wkt : {in_metres + R"(,VERTCS["v",VDATUM["v"],PARAMETER["Direction",-1.0],UNIT["m",1]])",

@@ -83,6 +83,12 @@ inline constexpr std::array<std::uint16_t, 29> systems_of_depths{
     5336, 5612, 5614, 5706, 5715, 5734, 5739, 5789, 5831, 5861, 5862, 5863, 5864, 5865, 5866,
     5867, 5873, 6357, 6358, 6359, 7976, 8051, 8053, 8358, 8378, 8897, 9287, 9288, 9672};
 
+/// Systems with an axis to the west, and mostly one to the south, from one code to another. Source: EPSG
+/// registry 10.076.
+inline constexpr std::array<std::uint16_t, 34> systems_to_the_west{
+    2046, 2055, 2065, 2065, 2218, 2218, 2221, 2221, 2296, 2307, 2963, 2963, 3052, 3053,  3144,  3145,  3173,
+    3173, 5017, 5017, 5224, 5224, 5513, 5513, 5515, 5515, 8044, 8045, 8352, 8352, 22275, 22293, 29371, 29385};
+
 /// GeoTIFF keys, with the records or tags that they refer to. Source: OGC GeoTIFF 1.1, 7.1.2.
 struct GeoKeys {
   static constexpr std::uint16_t in_numbers = 34736, in_texts = 34737, user_defined = 32767;
@@ -186,6 +192,8 @@ class ReferenceReader {
     made_.epsg = projected == GeoKeys::user_defined ? std::uint16_t{0} : projected;
     made_.vertical_epsg = vertical == GeoKeys::user_defined ? std::uint16_t{0} : vertical;
     has_heights_ = vertical != 0;
+    if (is_between(systems_to_the_west, projected) || keys.code(3075) == 27)  // Transverse Mercator, south oriented
+      keep("axis to the west");
     if (const auto told = unit_of(keys, 3076, 3077)) unit_ = told;
     if (const auto told = unit_of(keys, 4099, 0)) height_ = told;
     read_names(keys.text(1026).empty() ? keys.text(3073) : keys.text(1026), keys.text(4097));
@@ -220,19 +228,24 @@ class ReferenceReader {
     keep("WKT " + system.keyword);
     const bool is_vertical = system.keyword.starts_with("VERT");
     std::optional<double>& unit = is_vertical ? height_ : unit_;
+    bool is_west = false;
     std::string_view rest = system.content;
     while (const std::optional<WktNode> part = take_node(rest)) {
       if (part->keyword == "AXIS") {
         const std::string way = text::lower(part->after_name());
         if (way.starts_with("down")) keep_heights();
-        if (way.starts_with("west")) keep("axis to the west");
+        is_west |= way.starts_with("west");
         std::string_view of_axis = part->content;
         while (const std::optional<WktNode> one = take_node(of_axis))
           if (one->keyword.ends_with("UNIT")) unit = unit_of(*one);
       }
+      // Esri's texts have no axes: by these words, theirs go there
+      is_west |= part->content.starts_with("\"Transverse_Mercator_South") ||
+                 (part->content.starts_with("\"XY_Plane_Rotation") && part->after_name().starts_with('0'));
       if (part->keyword == "UNIT" || part->keyword == "LENGTHUNIT") unit = unit_of(*part);
       if (part->content.starts_with("\"Direction\"") && part->after_name().starts_with("-1")) keep_heights();
     }
+    if (is_west) keep("axis to the west");
   }
 
   void keep_heights() {

@@ -38,6 +38,10 @@ std::string dae(const std::string& of_asset, const std::string& of_node = "", co
 <scene><instance_visual_scene url="#s"/></scene></COLLADA>)";
 }
 
+std::string replaced(std::string text, const std::string& part, const std::string& other) {
+  return text.replace(text.find(part), part.size(), other);
+}
+
 /// The triangle as assimp's exporter writes it, with a comment.
 std::string fbx(const support::TemporaryFolder& folder, const std::string& comment) {
   Assimp::Importer importer;
@@ -79,6 +83,22 @@ TEST_CASE("each element of DAE and FBX files that changes a mesh is read, noted 
       {"UpAxis", of_fbx("")},
       {"<ph>", of_dae("", "<ph>")},
       {"<lookat", of_dae("", "<lookat>1 2 3 0 0 0 0 0 1</lookat>")},
+      {"POSITION without X Y Z",
+       [&] { return read_mesh_file(folder.write("a.dae", replaced(dae(""), "name=\"Z\"", ""))).warnings; }},
+      {"TEXCOORD without S T",
+       [&] {
+         const auto read = [&](const std::string& name) {
+           const std::string source =
+               R"(<source id='t'><float_array id="b" count="6">0 0 1 0 1 1</float_array><technique_common>
+<accessor source="#b" count="3" stride="2"><param name="S" type="float"/><param name=")" +
+               name + R"(" type="float"/></accessor></technique_common></source><source id="p">)";
+           const std::string input = "<input offset='0' semantic='TEXCOORD'\nsource = '#t'/><p>";
+           const std::string text = replaced(replaced(dae(""), "<p>", input), R"(<source id="p">)", source);
+           return read_mesh_file(folder.write("a.dae", text)).warnings;
+         };
+         CHECK(read("T").empty());
+         return read("Q");
+       }},
       {"<visibility>0",
        of_dae("", "<extra><technique profile=\"FCOLLADA\"><visibility>0</visibility></technique></extra>")},
       {"<skew", of_dae("", "<skew>45 0 1 0 1 0 0</skew>")},

@@ -53,6 +53,19 @@ struct Tally {
   }
 };
 
+TEST_CASE("a byte order mark is skipped, and header lines that end in CR alone are told") {
+  const support::TemporaryFolder folder;
+  for (const std::string format : {"ascii", "binary_little_endian"}) {
+    CAPTURE(format);
+    std::string bytes = ply_triangle().bytes(format);
+    CHECK(read_mesh_file(folder.write("a.ply", "\xEF\xBB\xBF" + bytes)).meshes.at(0).mesh.triangles.size() == 1);
+    for (std::size_t k = bytes.find("end_header") + 10; k < bytes.size(); --k)
+      if (bytes[k] == '\n') bytes[k] = '\r';
+    const auto path = folder.write("a.ply", bytes);
+    CHECK(contains(support::file_error([&] { (void)read_mesh_file(path); }).problem(), "lines that end in CR alone"));
+  }
+}
+
 TEST_CASE("rows are read one after the other, those of other elements are passed over") {
   PlyBuilder ply = ply_triangle();
   ply.elements.insert(ply.elements.begin(),

@@ -87,6 +87,15 @@ TEST_CASE("several scans follow each other, with transforms of their own") {
   }
 }
 
+TEST_CASE("a byte order mark is skipped, and lines that end in CR alone are told") {
+  CHECK(read("\xEF\xBB\xBF" + sound).positions == read(sound).positions);
+  const support::TemporaryFolder folder;
+  std::string text = sound;
+  for (char& c : text) c = c == '\n' ? '\r' : c;
+  const auto path = folder.write("a.ptx", text);
+  CHECK(contains(support::file_error([&] { (void)read_point_cloud(path); }).problem(), "lines that end in CR alone"));
+}
+
 TEST_CASE("each row of the rules of PTX files is kept") {
   const auto colours = [] {
     CHECK(read(sound).colours[0] == Vec3(255, 0, 51));

@@ -239,6 +239,9 @@ class GltfDocument {
   /// Number of an accessor, or of one of floating-point numbers in its place. Source: KHR_mesh_quantization.
   [[nodiscard]] std::uint64_t as_float(std::uint64_t number, bool is_place, const char* bound) {
     const std::uint64_t type = whole(item("accessors", number), "componentType");
+    const std::string_view shape = is_place ? "VEC3" : "VEC2",
+                           given = text_of(member(item("accessors", number), "type"));
+    if (given != shape) fail("has coordinates of the type ", given, " (accessor ", number, "): expected ", shape);
     if (type == 5126) return number;
     if (type > 5123 || (is_place && !is_quantized_))
       fail("has positions of the component type ", type, " (accessor ", number,

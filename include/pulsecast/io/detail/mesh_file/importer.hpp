@@ -14,6 +14,7 @@
 #include <pulsecast/io/detail/mesh_file/gltf_document.hpp>
 #include <pulsecast/io/detail/mesh_file/raw_material.hpp>
 #include <pulsecast/io/detail/obj/polygon.hpp>
+#include <pulsecast/io/detail/plain_xml.hpp>
 
 namespace PULSECAST_NAMESPACE::io::detail {
 
@@ -97,6 +98,11 @@ class MeshImport {
       const ImportedMaterial& one =
           materials_.emplace_back(MaterialImport(*found, *found->mMaterials[i], is_gltf()).read());
       scene_.materials.push_back(one.material);
+      const RawOptics& o = one.material.optics;
+      const std::array shares{o.colour[0],   o.colour[1], o.colour[2],    o.specular[0], o.specular[1],
+                              o.specular[2], o.opacity,   o.transmission, o.metallic};
+      if (!std::ranges::all_of(shares, [](float share) { return share >= 0 && share <= 1; }))
+        warn("material '", one.material.name, "' has a number beyond 0 to 1, for which the nearest of these is taken");
       if (one.moved_picture)
         warn("material '", one.material.name, "' transforms its texture coordinates, which has no effect");
     }
@@ -120,6 +126,7 @@ class MeshImport {
     for (const FormatRule& rule : mesh_rules)
       if ((ending == ".dae" || ending == ".fbx") && content.find(rule.name) != content.npos)
         keep_rule(mesh_rules, path_, "item", rule.name, scene_.warnings);
+    if (ending == ".dae") require_coordinates(content);
     if (!content.starts_with("glTF") && ending != ".gltf" && ending != ".glb") return path.string();
     const auto open = [&](const std::string& uri) {
       Assimp::IOStream* const stream = system_->Open((path.parent_path() / uri).c_str(), "rb");
@@ -131,6 +138,33 @@ class MeshImport {
     };
     system_->in_memory = gltf_.emplace(path_, content, open, scene_.warnings).files();
     return (path.parent_path() / "<document>.gltf").string();
+  }
+
+  /// Refuses coordinates of a DAE file without a param, in whose place assimp takes the first number of a row. Source:
+  /// COLLADA 1.4.1, accessor and param.
+  void require_coordinates(std::string_view text) {
+    std::map<std::string_view, std::string> params;  // names, by source
+    std::string* open = nullptr;
+    std::vector<std::array<std::string_view, 2>> inputs;  // meanings and sources
+    for (std::size_t at = text.find('<'); at != text.npos; at = text.find('<', at + 1)) {
+      std::string_view tag = text.substr(at + 1, text.find('>', at) - at - 1);
+      const std::string_view element = text::take_word(tag, " \t\r\n");
+      if (element != "source" && element != "param" && element != "input") continue;
+      std::map<std::string_view, std::string_view> given;
+      (void)each_attribute(tag, [&](std::string_view name, std::string_view value) { given[name] = value; });
+      if (element == "source") open = &params[given["id"]];
+      if (element == "param" && open) *open += text::message(' ', given["name"], ' ');
+      if (element == "input") inputs.push_back({given["semantic"], given["source"]});
+    }
+    for (const auto& [meaning, source] : inputs) {
+      const auto found = params.find(source.substr(std::min<std::size_t>(source.size(), 1)));  // after `#`
+      const auto has = [&](auto... names) { return (... && (found->second.find(names) != std::string::npos)); };
+      if (found == params.end()) continue;
+      if (meaning == "POSITION" && !has(" X ", " Y ", " Z "))
+        keep_rule(mesh_rules, path_, "item", "POSITION without X Y Z", scene_.warnings);
+      if (meaning == "TEXCOORD" && !has(" S ", " T ") && !has(" U ", " V ") && !has(" X ", " Y "))
+        keep_rule(mesh_rules, path_, "item", "TEXCOORD without S T", scene_.warnings);
+    }
   }
 
   [[noreturn]] void fail(const auto&... what) const {

@@ -16,6 +16,8 @@ inline constexpr auto mesh_rules = std::to_array<FormatRule>({
     {"<ph>", FormatUse::refused, "polygons without holes, as of an export of triangles"},
     {"<skew", FormatUse::refused, "a matrix in its place"},
     {"<lookat", FormatUse::refused, "a matrix in its place"},
+    {"POSITION without X Y Z", FormatUse::refused, "an accessor with the params X, Y and Z"},
+    {"TEXCOORD without S T", FormatUse::refused, "an accessor with the params S and T, or U and V"},
     {"<visibility>0", FormatUse::noted, "hidden nodes are shown"},
     {"<animation", FormatUse::noted, "nodes stand as without animation"},
     {"<spline", FormatUse::noted, "curves are left out"},

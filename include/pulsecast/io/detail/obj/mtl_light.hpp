@@ -61,9 +61,9 @@ namespace PULSECAST_NAMESPACE::io::detail {
 }
 
 /// Sets specular light by the standard keys: `illum` 3, 5 and 8, and `Pm`, are mirrors; 4, 6, 7 and
-/// 9 glass of the index `Ni`. False for an index out of range: that of glass is set. Source: MTL
+/// 9 glass of the index `Ni`, or that of glass if it is out of range. Source: MTL
 /// specification, Wavefront 1995; `Pm`: the common extension for physically based shading.
-[[nodiscard]] inline bool set_standard_light(Material& made, const tinyobj::material_t& m) {
+inline void set_standard_light(Material& made, const tinyobj::material_t& m) {
   const double rest = 1 - std::min(made.reflectance, 1.0),
                specular = (m.specular[0] + m.specular[1] + m.specular[2]) / 3;
   if (m.metallic > 0)
@@ -72,10 +72,8 @@ namespace PULSECAST_NAMESPACE::io::detail {
     made.smooth = SmoothInterface::mirror(std::min(specular > 0 ? specular : 1.0, rest));
   else if (m.illum == 4 || m.illum == 6 || m.illum == 7 || m.illum == 9) {
     made.smooth = SmoothInterface::glass();
-    if (m.ior < 1 || m.ior > 4) return false;
-    if (m.ior > 1) made.smooth.inside = {.index = m.ior};
+    if (m.ior > 1 && m.ior <= 4) made.smooth.inside = {.index = m.ior};
   }
-  return true;
 }
 
 /// Sets specular light by the keys of this library, but for water. `words_of(key)` are right.

@@ -157,7 +157,7 @@ class ObjPiece : private StatementBuffer {
   void use(const char* name) { uses.push_back({name, line(), std::nullopt}); }
 
   void vertex(const Vec3& p) {
-    require(max_norm(p) <= max_number, "three finite numbers, none beyond 1e12");
+    require(is_within(p, max_number), "three finite numbers, none beyond 1e12");
     vertices.push_back(p);
   }
 

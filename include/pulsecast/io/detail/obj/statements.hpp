@@ -154,6 +154,7 @@ class StatementBuffer : public std::streambuf {
       char& c = text_[i];
       if (static_cast<unsigned char>(c) >= ' ') continue;
       if (c < '\t' || c > '\r') fail_here("holds binary data: expected the text of an OBJ or MTL file");
+      if (c == '\r' && i + 1 < after && text_[i + 1] != c) fail(path_, InputFile::cr_alone);
       c = ' ';
     }
     return text::trimmed(std::string_view(text_).substr(begin, after - begin));

@@ -34,7 +34,7 @@ class PlyFile {
   /// True if the file begins with the PLY signature.
   [[nodiscard]] static bool is_ply(InputFile& file) {
     file.seek(0);
-    const std::string_view head = file.take(4);
+    const std::string_view head = text::without_byte_order_mark(file.take(7));
     const bool is = head.starts_with("ply") && (head.size() < 4 || head[3] == '\n' || head[3] == '\r');
     file.seek(0);
     return is;
@@ -99,7 +99,8 @@ class PlyFile {
  private:
   void read_header() {
     const std::string head(file_.take(std::size_t{1} << 16));
-    std::string_view rest = head, format;
+    std::string_view rest = text::without_byte_order_mark(head), format;
+    file_.check_first(rest.substr(0, rest.find('\n')));
     for (std::string_view key; key != "end_header";) {
       if (rest.find('\n') == rest.npos) file_.fail("is no PLY file: its PLY header has no end_header within 64 KiB");
       std::string_view line = text::trimmed(text::take_line(rest));

@@ -25,7 +25,7 @@ class PtxPoints {
  public:
   /// True if the file begins as a scan: two lines are whole numbers, and the third is none.
   [[nodiscard]] static bool is_ptx(InputFile& file) {
-    std::string_view head = file.take(64);
+    std::string_view head = text::without_byte_order_mark(file.take(64));
     const auto is_count = [&] { return text::number_in<std::uint32_t>(text::trimmed(text::take_line(head))); };
     const bool is = is_count() && is_count() && !is_count();
     file.seek(0);
