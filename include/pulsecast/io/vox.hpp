@@ -75,8 +75,7 @@ inline constexpr auto vox_rules = std::to_array<FormatRule>({
     {"max_pad", FormatUse::read, "density of whole cubes, for scaled voxels"},
     {"lad_type = spherical", FormatUse::read, "directions of leaves, as without a table (ladlut)"},
     {"lad_type = *", FormatUse::noted, "directions of leaves are spherical, or by a table (ladlut)"},
-    {"columns i, j, k", FormatUse::read, "place of a voxel in the grid"},
-    {"column PadBVTotal", FormatUse::read, "density of the leaves in a voxel"},
+    {"columns i, j, k, PadBVTotal", FormatUse::read, "place of a voxel in the grid, and density of its leaves"},
     {"column transmittance", FormatUse::read, "1 or NaN: without a cube, for opaque and scaled voxels"},
     {"*", FormatUse::read, "nothing: other columns and keys tell how the voxels were measured"},
 });
@@ -120,17 +119,14 @@ class VoxelFileReader {
       const bool has_angles = key == "lad_type" && settings_.use == VoxelUse::transmissive;
       keep_rule(vox_rules, table_.path(), "key", has_angles ? key + " = " + text::lower(text::trimmed(value)) : key,
                 table_.warnings);
-      if (key == "min_corner") {
-        min_corner_ = vector(key, value);
-      } else if (key == "max_corner") {
-        max_corner_ = vector(key, value);
-      } else if (key == "split") {
+      if (key == "min_corner") min_corner_ = vector(key, value);
+      if (key == "max_corner") max_corner_ = vector(key, value);
+      if (key == "res") resolution(value);
+      if (key == "split") {
         split_ = vector(key, value);
         for (const double count : numbers(value))
           if (!(count >= 1 && count <= 0x1p32 && std::floor(count) == count))
             table_.fail_here("'split' is ", text::quoted(value), ": expected three whole numbers from 1 to 2^32");
-      } else if (key == "res") {
-        resolution(value);
       } else if (key == "max_pad") {
         const std::vector<double> given = numbers(value);
         if (given.size() != 1 || !(given[0] > 0))
