@@ -47,8 +47,6 @@ TEST_CASE("lines come without their ends") {
   for (const char* text : {"a\rb\r", "a\rb\n", "\xEF\xBB\xBFx\ry"})
     CHECK(
         contains(support::file_error([&] { (void)lines(text); }).problem(), "lines that end in CR alone: expected LF"));
-  for (const char* text : {"\xFF\xFEz", "\xFE\xFFz"})
-    CHECK(contains(support::file_error([&] { (void)lines(text); }).problem(), "is in UTF-16: expected UTF-8"));
 }
 
 TEST_CASE("an input file knows where it is") {

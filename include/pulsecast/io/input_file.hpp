@@ -102,11 +102,9 @@ class InputFile {
     return line_ == 1 ? text::without_byte_order_mark(line) : line;
   }
 
-  /// Refuses a first line that holds others, or is not in UTF-8.
+  /// Refuses a first line that holds others.
   void check_first(std::string_view line) const {
     if (line.find_first_not_of('\r', line.find('\r')) != line.npos) fail(cr_alone);
-    if (line.starts_with("\xFF\xFE") || line.starts_with("\xFE\xFF"))
-      fail("is in UTF-16: expected UTF-8, as iconv -f UTF-16 makes it");
   }
 
   /// Rest of the file, without the byte order mark at its beginning.
