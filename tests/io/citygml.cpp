@@ -272,6 +272,8 @@ TEST_CASE("systems of CityGML that may not be in metres are noted by their code"
   for (const char* in_metres : {"EPSG:25832", "urn:ogc:def:crs:EPSG::28992", "EPSG:7415", "EPSG:5555", "EPSG:32633"})
     CHECK_FALSE_MESSAGE(is_noted(in_metres), in_metres);
   for (const char* in_feet : {"EPSG:2263", "urn:ogc:def:crs:EPSG::2225"}) CHECK_MESSAGE(is_noted(in_feet), in_feet);
+  const auto warnings = read_citygml(folder.write("a.gml", city({house()}, "EPSG:2065"))).file.warnings;
+  CHECK(std::ranges::any_of(warnings, [](const std::string& one) { return contains(one, "axis to the west"); }));
 }
 
 TEST_CASE("CityGML files that are not for us are explained") {
