@@ -89,8 +89,7 @@ class MtlReader : private StatementBuffer {
         note("has no effect: the surface is opaque; map_d cuts holes, pulsecast_interface makes panes");
     const bool is_colour = keyword() == "Kd" || keyword() == "Ks";
     const auto is_beyond = [&](std::string_view word) {
-      const double number = number_in<double>(word).value_or(0);
-      return number > 1 || (number < 0 && !is_colour);
+      return number_in<double>(word).value_or(0) > 1 || (!is_colour && word.starts_with('-'));
     };
     if ((is_colour || keyword() == "Tf" || keyword() == "Pm") && std::ranges::any_of(given, is_beyond))
       note("has a number beyond 0 to 1: as a colour or a share of light, the nearest of these is taken");

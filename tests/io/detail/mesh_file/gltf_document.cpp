@@ -212,6 +212,24 @@ TEST_CASE("what gltfpack packs are the trees that it was given, to the quantum")
   }
 }
 
+TEST_CASE("coordinates of another shape are refused, and colours and shares beyond 1 are noted") {
+  const Folder folder;
+  const auto read = [&](const std::string& shape, const std::string& material) {
+    Gltf gltf;
+    gltf.primitive("\"POSITION\":" + gltf.accessor(corners, 5126, shape, 3), ",\"material\":0");
+    gltf.mesh("m");
+    gltf.node("\"mesh\":0");
+    gltf.more = R"("materials":[{"pbrMetallicRoughness":{)" + material + "}}],";
+    return read_mesh_file(folder.write("a.gltf", gltf.text())).warnings;
+  };
+  CHECK(contains(support::file_error([&] { (void)read("VEC2", ""); }).problem(), "of the type VEC2 (accessor 0)"));
+  CHECK(read("VEC3", R"("baseColorFactor":[1,0.5,0,1],"metallicFactor":1)").empty());
+  for (const char* material : {R"("baseColorFactor":[2,0.5,0,1])", R"("metallicFactor":1.5)"}) {
+    REQUIRE(read("VEC3", material).size() == 1);
+    CHECK(contains(read("VEC3", material)[0], "has a number beyond 0 to 1"));
+  }
+}
+
 TEST_CASE("texture coordinates are shares of whole numbers, and transformed as their picture is") {
   const Folder folder;
   const auto coordinates = [&](const std::string& transform, const std::string& more = "") {

@@ -83,21 +83,18 @@ TEST_CASE("each element of DAE and FBX files that changes a mesh is read, noted 
       {"UpAxis", of_fbx("")},
       {"<ph>", of_dae("", "<ph>")},
       {"<lookat", of_dae("", "<lookat>1 2 3 0 0 0 0 0 1</lookat>")},
-      {"POSITION without X Y Z",
-       [&] { return read_mesh_file(folder.write("a.dae", replaced(dae(""), "name=\"Z\"", ""))).warnings; }},
-      {"TEXCOORD without S T",
+      {"params of other names",
        [&] {
-         const auto read = [&](const std::string& name) {
-           const std::string source =
-               R"(<source id='t'><float_array id="b" count="6">0 0 1 0 1 1</float_array><technique_common>
-<accessor source="#b" count="3" stride="2"><param name="S" type="float"/><param name=")" +
-               name + R"(" type="float"/></accessor></technique_common></source><source id="p">)";
-           const std::string input = "<input offset='0' semantic='TEXCOORD'\nsource = '#t'/><p>";
-           const std::string text = replaced(replaced(dae(""), "<p>", input), R"(<source id="p">)", source);
-           return read_mesh_file(folder.write("a.dae", text)).warnings;
+         const auto read = [&](const std::string& part, const std::string& other) {
+           return read_mesh_file(folder.write("a.dae", replaced(dae(""), part, other))).warnings;
          };
-         CHECK(read("T").empty());
-         return read("Q");
+         for (const char* name : {"", "name=\"z\"", "name=\"W\""})
+           CHECK_THROWS_AS((void)read("name=\"Z\"", name), FileError);
+         CHECK(read("<source", R"(<source id="t"><float_array id="b" count="2">0 1</float_array><technique_common>
+<accessor source="#b" count="1" stride="2"><param name="S"/><param name='T' type="float"/></accessor>
+</technique_common></source><source)")
+                   .empty());
+         return read("<param name=\"Z\" type=\"float\"/>", "");
        }},
       {"<visibility>0",
        of_dae("", "<extra><technique profile=\"FCOLLADA\"><visibility>0</visibility></technique></extra>")},

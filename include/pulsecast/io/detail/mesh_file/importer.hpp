@@ -14,7 +14,6 @@
 #include <pulsecast/io/detail/mesh_file/gltf_document.hpp>
 #include <pulsecast/io/detail/mesh_file/raw_material.hpp>
 #include <pulsecast/io/detail/obj/polygon.hpp>
-#include <pulsecast/io/detail/plain_xml.hpp>
 
 namespace PULSECAST_NAMESPACE::io::detail {
 
@@ -126,7 +125,7 @@ class MeshImport {
     for (const FormatRule& rule : mesh_rules)
       if ((ending == ".dae" || ending == ".fbx") && content.find(rule.name) != content.npos)
         keep_rule(mesh_rules, path_, "item", rule.name, scene_.warnings);
-    if (ending == ".dae") require_coordinates(content);
+    if (ending == ".dae") require_names(content);
     if (!content.starts_with("glTF") && ending != ".gltf" && ending != ".glb") return path.string();
     const auto open = [&](const std::string& uri) {
       Assimp::IOStream* const stream = system_->Open((path.parent_path() / uri).c_str(), "rb");
@@ -140,30 +139,17 @@ class MeshImport {
     return (path.parent_path() / "<document>.gltf").string();
   }
 
-  /// Refuses coordinates of a DAE file without a param, in whose place assimp takes the first number of a row. Source:
-  /// COLLADA 1.4.1, accessor and param.
-  void require_coordinates(std::string_view text) {
-    std::map<std::string_view, std::string> params;  // names, by source
-    std::string* open = nullptr;
-    std::vector<std::array<std::string_view, 2>> inputs;  // meanings and sources
-    for (std::size_t at = text.find('<'); at != text.npos; at = text.find('<', at + 1)) {
-      std::string_view tag = text.substr(at + 1, text.find('>', at) - at - 1);
-      const std::string_view element = text::take_word(tag, " \t\r\n");
-      if (element != "source" && element != "param" && element != "input") continue;
-      std::map<std::string_view, std::string_view> given;
-      (void)each_attribute(tag, [&](std::string_view name, std::string_view value) { given[name] = value; });
-      if (element == "source") open = &params[given["id"]];
-      if (element == "param" && open) *open += text::message(' ', given["name"], ' ');
-      if (element == "input") inputs.push_back({given["semantic"], given["source"]});
-    }
-    for (const auto& [meaning, source] : inputs) {
-      const auto found = params.find(source.substr(std::min<std::size_t>(source.size(), 1)));  // after `#`
-      const auto has = [&](auto... names) { return (... && (found->second.find(names) != std::string::npos)); };
-      if (found == params.end()) continue;
-      if (meaning == "POSITION" && !has(" X ", " Y ", " Z "))
-        keep_rule(mesh_rules, path_, "item", "POSITION without X Y Z", scene_.warnings);
-      if (meaning == "TEXCOORD" && !has(" S ", " T ") && !has(" U ", " V ") && !has(" X ", " Y "))
-        keep_rule(mesh_rules, path_, "item", "TEXCOORD without S T", scene_.warnings);
+  /// Refuses numbers of a DAE file by other names: assimp takes the first of a row for each that it misses, as for z.
+  void require_names(std::string_view text) {
+    text = text.substr(std::min(text.find("<library_geometries"), text.size()));
+    text = text.substr(0, text.find("</library_geometries"));
+    for (std::size_t at = text.find("<accessor"); at != text.npos; at = text.find("<accessor", at + 1)) {
+      const std::string_view params = text.substr(at, text.find("</accessor", at) - at);
+      std::string names = "|";
+      for (std::size_t i = params.find("name="); i < params.size() - 6; i = params.find("name=", i + 6))
+        names += params.substr(i + 6, params.find(params[i + 5], i + 6) - i - 6);
+      if (names == "|" || std::string_view("|XYZ|ST|STP|UV|UVW|RGB|RGBA|").find(names + "|") == text.npos)
+        keep_rule(mesh_rules, path_, "item", "params of other names", scene_.warnings);
     }
   }
 
