@@ -46,6 +46,17 @@ TEST_CASE_TEMPLATE("a Bvh of primitives that all stand at one point is halved", 
   CHECK(tree.depth() <= 14);
 }
 
+TEST_CASE_TEMPLATE("a Bvh of the halves of a square is one leaf, one of boxes apart has a leaf each", Real, float,
+                   double) {
+  const Box square{{0, 0, 0}, {1, 1, 0}};
+  for (const double apart : {0.0, 0.4, 2.0}) {
+    const std::vector<Box> boxes{square, {square.min + Vec3{apart, 0, 0}, square.max + Vec3{apart, 0, 0}}};
+    std::size_t largest = 0;
+    CHECK(offers(Bvh<Real>(boxes), boxes.size(), largest) == std::vector<std::size_t>(2, 1));
+    CHECK(largest == (apart > 1 ? 1 : 2));
+  }
+}
+
 TEST_CASE("a Bvh of boxes that crowd at a point is no deeper than 64 levels, and still whole") {
   const std::vector<Box> boxes = crowd(2000, 0.75);  // one bin in 16 takes off about ten boxes a level
   const Bvh<double> tree(boxes);

@@ -11,6 +11,7 @@
 #include <doctest/doctest.h>
 
 #include "support/generators.hpp"
+#include "support/relative.hpp"
 
 using namespace pulsecast;
 
@@ -34,13 +35,6 @@ bool same_bits(double a, double b) {
 }
 double signed_log_uniform(support::Generator& any, double from, double to) {
   return any.uniform(-1, 1) < 0 ? -any.log_uniform(from, to) : any.log_uniform(from, to);
-}
-
-/// True if the compiler contracts a product and a sum into one rounding.
-bool contracted() {
-  volatile double third = 1.0 / 3, three = 3, product = third * three;
-  const double a = third, b = three, c = -product;
-  return a * b + c != 0;
 }
 
 /// True if each lane that f sets from x and y has the bits that f gives of that lane alone.
@@ -200,7 +194,7 @@ TEST_CASE("whole numbers and square roots are those of the C library") {
 }
 
 TEST_CASE("a lane has the bits of the plain number, however many lanes there are") {
-  if (contracted()) return;  // then the last bits are the compiler's choice
+  if (support::contracted()) return;  // then the last bits are the compiler's choice
   const auto agree = [](const auto& f, const double(&x)[8], const double(&y)[8]) {
     return lanes_agree<2>(f, x, y) && lanes_agree<4>(f, x, y) && lanes_agree<8>(f, x, y);
   };

@@ -12,4 +12,11 @@ namespace pulsecast::support {
   return doctest::Approx(value).epsilon(share).scale(0);
 }
 
+/// True if the compiler contracts a product and a sum into one rounding.
+[[nodiscard]] inline bool contracted() {
+  volatile double third = 1.0 / 3, three = 3, product = third * three;
+  const double a = third, b = three, c = -product;
+  return a * b + c != 0;
+}
+
 }  // namespace pulsecast::support

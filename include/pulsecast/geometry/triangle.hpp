@@ -173,35 +173,50 @@ template <class Rays, class Hits, class Solid = detail::SolidEverywhere>
   const simd::Doubles extent = simd::max(simd::max(simd::max(magnitude(lowest.x), magnitude(highest.x)),
                                                    simd::max(magnitude(lowest.y), magnitude(highest.y))),
                                          simd::max(magnitude(lowest.z), magnitude(highest.z)));
-  const simd::Doubles margin = 8 * unit * extent;
 
-  // interval inside the box; a zero direction is made so small that its walls lie at infinity
-  const simd::Doubles outside = simd::Doubles{} - detail::infinity;
-  const auto per_metre = [](const auto& direction) noexcept {
-    const auto tiny = std::remove_cvref_t<decltype(direction)>{} + 1e-300;
-    return 1 / (direction * direction > 0 ? direction : tiny);
+  // Ranges at which rays cross planes, moved into the boxes; `inside` loses rays that miss these. By
+  // far most crossings are in boxes widened by half as much, which takes no division: they stay.
+  struct Walls {
+    Corner low, high;
+    simd::Doubles margin;
   };
-  const auto between_walls = [](simd::Doubles& entry, simd::Doubles& exit, const auto& per, const auto& low,
-                                const auto& high) noexcept {
-    const simd::Doubles to_low = low * per, to_high = high * per;
-    entry = simd::max(simd::min(to_low, to_high), entry);
-    exit = simd::min(simd::max(to_low, to_high), exit);
+  const Walls walls{lowest, highest, 8 * unit * extent};
+  const auto widened = [](const Walls& box, double part) noexcept -> Walls {
+    const simd::Doubles by = part * box.margin;
+    const auto& [low, high, margin] = box;
+    return {{low.x - by, low.y - by, low.z - by}, {high.x + by, high.y + by, high.z + by}, margin};
   };
-  const auto clamped = [](const simd::Doubles& crossing, const simd::Doubles& entry,
-                          const simd::Doubles& exit) noexcept {
-    const simd::Doubles after_entry = crossing < entry ? entry : crossing;
+  const auto crossings = [&](const Corner& d, const simd::Doubles& offset, const simd::Doubles& slope,
+                             const Walls& inner, const auto& box, simd::Mask& inside) noexcept {
+    const simd::Doubles at = offset / slope;
+    const auto within = [&](simd::Doubles Corner::*axis) noexcept {
+      const simd::Doubles place = at * (d.*axis);
+      return simd::Mask((place >= inner.low.*axis) & (place <= inner.high.*axis));
+    };
+    if (simd::bits(inside & ~(within(&Corner::x) & within(&Corner::y) & within(&Corner::z))) == 0) [[likely]]
+      return at;
+    const Walls outer = widened(box(), 1);
+    simd::Doubles exit = simd::Doubles{} + detail::infinity, entry = -exit;
+    for (const auto axis : {&Corner::x, &Corner::y, &Corner::z}) {
+      // a zero direction is made so small that its walls lie at infinity
+      const simd::Doubles along = d.*axis, tiny = simd::Doubles{} + 1e-300;
+      const simd::Doubles per_metre = 1 / (along * along > 0 ? along : tiny);
+      const simd::Doubles to_low = outer.low.*axis * per_metre, to_high = outer.high.*axis * per_metre;
+      entry = simd::max(simd::min(to_low, to_high), entry);
+      exit = simd::min(simd::max(to_low, to_high), exit);
+    }
+    inside &= entry <= exit;
+    const simd::Doubles after_entry = at < entry ? entry : at;
     return simd::Doubles(after_entry > exit ? exit : after_entry);
   };
   if constexpr (single) {
     const Vec3 d = rays.direction(0);
-    const simd::Doubles x = simd::Doubles{} + d.x, y = simd::Doubles{} + d.y, z = simd::Doubles{} + d.z;
-    const simd::Doubles slope = x * normals.x + y * normals.y + z * normals.z;
-    simd::Doubles entry = outside, exit = -outside;
-    between_walls(entry, exit, per_metre(d.x), simd::Doubles(lowest.x - margin), simd::Doubles(highest.x + margin));
-    between_walls(entry, exit, per_metre(d.y), simd::Doubles(lowest.y - margin), simd::Doubles(highest.y + margin));
-    between_walls(entry, exit, per_metre(d.z), simd::Doubles(lowest.z - margin), simd::Doubles(highest.z + margin));
-    const simd::Doubles at = clamped(offsets / slope, entry, exit);
-    const simd::Mask hit = between_edges & (slope * slope > grazing) & (entry <= exit) & (at > rays.near);
+    const Corner along{simd::Doubles{} + d.x, simd::Doubles{} + d.y, simd::Doubles{} + d.z};
+    const simd::Doubles slope = along.x * normals.x + along.y * normals.y + along.z * normals.z;
+    simd::Mask hit = between_edges & (slope * slope > grazing);
+    const simd::Doubles at = crossings(
+        along, offsets, slope, widened(walls, 0.5), [&] { return walls; }, hit);
+    hit &= at > rays.near;
     for (candidates &= simd::bits(hit); candidates != 0; candidates &= candidates - 1) {
       const auto t = static_cast<std::size_t>(std::countr_zero(candidates));
       if constexpr (with_holes)
@@ -209,34 +224,43 @@ template <class Rays, class Hits, class Solid = detail::SolidEverywhere>
       nearest.offer(0, at[t], primitives[t]);
     }
   } else {
+    // triangles that all rays hit between the edges, certainly
+    const unsigned around =
+        simd::bits(((least(ab) > 4 * ab.doubt) & (least(bc) > 4 * bc.doubt) & (least(ca) > 4 * ca.doubt)) |
+                   ((most(ab) < -4 * ab.doubt) & (most(bc) < -4 * bc.doubt) & (most(ca) < -4 * ca.doubt)));
     for (; candidates != 0; candidates &= candidates - 1) {
       const auto t = static_cast<std::size_t>(std::countr_zero(candidates));
       const PrimitiveIndex primitive = primitives[t];
+      const auto of_one = [&]() noexcept -> Walls {
+        const auto one = [t](const Corner& p) noexcept -> Corner {
+          return {simd::Doubles{} + p.x[t], simd::Doubles{} + p.y[t], simd::Doubles{} + p.z[t]};
+        };
+        return {one(lowest), one(highest), simd::Doubles{} + walls.margin[t]};
+      };
+      const Walls inner = widened(of_one(), 0.5);
       for (std::size_t j = 0; j < rays.size; j += simd::lane_count) {
-        const simd::Doubles x = simd::load<simd::Doubles>(rays.x[j]), y = simd::load<simd::Doubles>(rays.y[j]),
-                            z = simd::load<simd::Doubles>(rays.z[j]);
-        const simd::Doubles u = x * ab.x[t] + y * ab.y[t] + z * ab.z[t];
-        const simd::Doubles v = x * bc.x[t] + y * bc.y[t] + z * bc.z[t];
-        const simd::Doubles w = x * ca.x[t] + y * ca.y[t] + z * ca.z[t];
-        const simd::Mask on_left = (u >= -ab.doubt[t]) & (v >= -bc.doubt[t]) & (w >= -ca.doubt[t]);
-        const simd::Mask on_right = (u <= ab.doubt[t]) & (v <= bc.doubt[t]) & (w <= ca.doubt[t]);
-        const simd::Mask between = on_left | on_right;
-        if (simd::bits(between) == 0) continue;
+        const Corner d{simd::load<simd::Doubles>(rays.x[j]), simd::load<simd::Doubles>(rays.y[j]),
+                       simd::load<simd::Doubles>(rays.z[j])};
+        simd::Mask inside = simd::Mask{} - 1;
+        if ((around >> t & 1) == 0) {
+          const simd::Doubles u = d.x * ab.x[t] + d.y * ab.y[t] + d.z * ab.z[t];
+          const simd::Doubles v = d.x * bc.x[t] + d.y * bc.y[t] + d.z * bc.z[t];
+          const simd::Doubles w = d.x * ca.x[t] + d.y * ca.y[t] + d.z * ca.z[t];
+          const simd::Mask on_left = (u >= -ab.doubt[t]) & (v >= -bc.doubt[t]) & (w >= -ca.doubt[t]);
+          const simd::Mask on_right = (u <= ab.doubt[t]) & (v <= bc.doubt[t]) & (w <= ca.doubt[t]);
+          inside = on_left | on_right;
+          if (simd::bits(inside) == 0) continue;
+        }
 
-        const simd::Doubles slope = x * normals.x[t] + y * normals.y[t] + z * normals.z[t];
-        const simd::Mask inside = between & (slope * slope > grazing[t]);
-
-        simd::Doubles entry = outside, exit = -outside;
-        between_walls(entry, exit, per_metre(x), lowest.x[t] - margin[t], highest.x[t] + margin[t]);
-        between_walls(entry, exit, per_metre(y), lowest.y[t] - margin[t], highest.y[t] + margin[t]);
-        between_walls(entry, exit, per_metre(z), lowest.z[t] - margin[t], highest.z[t] + margin[t]);
-        const simd::Doubles at = clamped(offsets[t] / slope, entry, exit);
+        const simd::Doubles slope = d.x * normals.x[t] + d.y * normals.y[t] + d.z * normals.z[t];
+        inside &= slope * slope > grazing[t];
+        const simd::Doubles at = crossings(d, simd::Doubles{} + offsets[t], slope, inner, of_one, inside);
 
         const simd::Doubles best = simd::load<simd::Doubles>(nearest.range[j]);
         const simd::Ids best_id = simd::load<simd::Ids>(nearest.id[j]),
                         own_id = simd::Ids{} + (nearest.part | primitive);
         const simd::Mask nearer = (at < best) | ((at == best) & (own_id < best_id));
-        simd::Mask hit = inside & (entry <= exit) & (at > rays.near_of(j)) & nearer;
+        simd::Mask hit = inside & (at > rays.near_of(j)) & nearer;
         if constexpr (with_holes)
           for (unsigned lanes = simd::bits(hit); lanes != 0; lanes &= lanes - 1)
             if (const auto lane = static_cast<std::size_t>(std::countr_zero(lanes)); !solid(j + lane, primitive))

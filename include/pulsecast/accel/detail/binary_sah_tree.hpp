@@ -320,9 +320,9 @@ class BinarySahTree {
     const double as_leaf = size <= leaf_size_ ? area * leaf_cost : infinity;
     node.leaf = as_leaf <= as_node;
     sums[0] = std::min(as_leaf, as_node);
-    for (std::size_t j = 1; j < places - 1; ++j)  // the last entry is the node itself
-      if (sums[0] <= sums[j]) {
-        sums[j] = sums[0];
+    for (std::size_t j = 1; j < places; ++j)  // the last entry is the node itself: the root may hold a leaf alone
+      if (const double whole = j + 1 < places ? sums[0] : as_leaf; whole <= sums[j]) {
+        sums[j] = whole;
         node.left[j - 1] = 0;
       }
     return sums;
