@@ -76,9 +76,8 @@ struct RayBundle : BundleOrigin {
     z[j] = d.z;
   }
 
-  /// Components of the directions of a register of rays.
   struct Directions {
-    simd::Doubles x, y, z;  ///< one in each lane
+    simd::Doubles x, y, z;  ///< components of the directions of a register of rays
   };
   /// Sets all directions, those of the rays from j on to `directions(j)`, as `pad` leaves them.
   // always inlined, as matrices then stay in registers
@@ -96,6 +95,9 @@ struct RayBundle : BundleOrigin {
       const Directions d = directions(whole);
       take(whole, {filled(d.x, left), filled(d.y, left), filled(d.z, left)});
     }
+    directions_min = {of_x.low[0], of_y.low[0], of_z.low[0]};
+    directions_max = {of_x.high[0], of_y.high[0], of_z.high[0]};
+    if (size == 1) return;
     directions_min = {simd::min(of_x.low), simd::min(of_y.low), simd::min(of_z.low)};
     directions_max = {simd::max(of_x.high), simd::max(of_y.high), simd::max(of_z.high)};
   }
@@ -112,7 +114,6 @@ struct RayBundle : BundleOrigin {
   /// Minimum and maximum of a column that is being set.
   struct Extremes {
     simd::Doubles low = simd::Doubles{} + detail::infinity, high = -low;
-
     [[gnu::always_inline]] void take(const simd::Doubles& d, double& to) noexcept {
       simd::store(d, to);
       low = simd::min(d, low);  // NaN fails every comparison
@@ -122,6 +123,7 @@ struct RayBundle : BundleOrigin {
 
   /// The first `number` lanes, and copies of the last of them.
   static simd::Doubles filled(const simd::Doubles& d, std::size_t number) noexcept {
+    if (number == 1) return d[0] - simd::Doubles{};
     const auto lane = simd::generate([](std::size_t k) { return static_cast<double>(k); });
     return lane < static_cast<double>(number) ? d : d[number - 1] - simd::Doubles{};  // a zero keeps its sign
   }
