@@ -4,6 +4,7 @@
 
 #include <doctest/doctest.h>
 
+#include <cmath>
 #include <limits>
 
 #include "support/generators.hpp"
@@ -31,6 +32,11 @@ TEST_CASE("a bundle is filled up with copies of its last ray") {
     CHECK(rays.padded_size() < size + RayBundle::lanes);
     for (std::size_t j = size; j < rays.padded_size(); ++j) CHECK(rays.direction(j) == rays.direction(size - 1));
   }
+  RayBundle level;
+  level.size = 1;
+  level.set_direction(0, {0.6, 0.8, -0.0});
+  level.pad();
+  for (std::size_t j = 0; j < level.padded_size(); ++j) CHECK(std::signbit(level.direction(j).z));
 }
 
 TEST_CASE("the bounds of the directions leave NaN out") {

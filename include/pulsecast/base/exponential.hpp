@@ -33,7 +33,7 @@ template <class V, class... Lower>
 template <class Number>
 requires std::same_as<Number, double> || std::same_as<Number, simd::Vec<double, 2>> ||
     std::same_as<Number, simd::Vec<double, 4>> || std::same_as<Number, simd::Vec<double, 8>>
-[[nodiscard]] inline Number exponential(const Number& x) noexcept {
+[[nodiscard, gnu::always_inline]] inline Number exponential(const Number& x) noexcept {
   using Bits = simd::detail::Bits<Number>;
   constexpr double per_ln2 = 1.4426950408889634;
   constexpr double ln2_high = 0x1.62e42fee00000p-1, ln2_low = 0x1.a39ef35793c76p-33;

@@ -78,7 +78,7 @@ class BandLimitedReceiver {
     const ReceivedPulse& pulse = (*known_.find(input.emitter.laser))->pulse;
     double nearest = std::numeric_limits<double>::infinity(), farthest = 0;
     for (const Reflection& r : input.reflections) {
-      if (!can_count(r, s.sample_interval)) return {};
+      if (!can_count(r.power, r.range, s.sample_interval)) return {};
       nearest = std::min(nearest, arrival(r));
       farthest = std::max(farthest, arrival(r));
     }

@@ -145,6 +145,7 @@ class FullWaveform {
     while (samples.begin_section()) {
       w.window.clear();
       for (bool more = true; more;) {
+        if constexpr (ideal) samples.append(w.window.samples());
         const double n = samples.number(), power = samples.power(more);
         keep(n - samples.start(), power + samples.background(), w.record);
         w.window.take(n, power, more, search, w.peaks);

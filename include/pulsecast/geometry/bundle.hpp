@@ -76,32 +76,58 @@ struct RayBundle : BundleOrigin {
     z[j] = d.z;
   }
 
+  struct Directions {
+    simd::Doubles x, y, z;  ///< components of the directions of a register of rays
+  };
+  /// Sets all directions, those of the rays from j on to `directions(j)`, as `pad` leaves them.
+  // always inlined, as matrices then stay in registers
+  [[gnu::always_inline]] void set_directions(const auto& directions) noexcept {
+    PULSECAST_ASSERT(size > 0 && size <= capacity && !(near < 0));
+    Extremes of_x, of_y, of_z;
+    const auto take = [&](std::size_t j, const Directions& d) noexcept {
+      of_x.take(d.x, x[j]);
+      of_y.take(d.y, y[j]);
+      of_z.take(d.z, z[j]);
+    };
+    const std::size_t left = size % lanes, whole = size - left;
+    for (std::size_t j = 0; j < whole; j += lanes) take(j, directions(j));
+    if (left > 0) {
+      const Directions d = directions(whole);
+      take(whole, {filled(d.x, left), filled(d.y, left), filled(d.z, left)});
+    }
+    directions_min = {of_x.low[0], of_y.low[0], of_z.low[0]};
+    directions_max = {of_x.high[0], of_y.high[0], of_z.high[0]};
+    if (size == 1) return;
+    directions_min = {simd::min(of_x.low), simd::min(of_y.low), simd::min(of_z.low)};
+    directions_max = {simd::max(of_x.high), simd::max(of_y.high), simd::max(of_z.high)};
+  }
+
   /// Fills the idle lanes with copies of the last ray, as readers of `padded_size()` rays expect,
   /// and finds `directions_min` and `directions_max`. To be called once the directions are set.
   void pad() noexcept {
-    PULSECAST_ASSERT(size > 0 && size <= capacity && !(near < 0));
-    for (std::size_t j = size; j < padded_size(); ++j) set_direction(j, direction(size - 1));
-    const Column* const columns[] = {&x, &y, &z};
-    if (size == 1) {
-      using detail::infinity;
-      const auto number = [](double d, double other) noexcept { return std::isnan(d) ? other : d; };
-      directions_min = {number(x[0], infinity), number(y[0], infinity), number(z[0], infinity)};
-      directions_max = {number(x[0], -infinity), number(y[0], -infinity), number(z[0], -infinity)};
-      return;
-    }
-    for (int k = 0; k < 3; ++k) {
-      simd::Doubles low = simd::Doubles{} + detail::infinity, high = -low;
-      for (std::size_t j = 0; j < size; j += simd::lane_count) {
-        const simd::Doubles d = simd::load<simd::Doubles>((*columns[k])[j]);
-        low = simd::min(d, low);  // NaN fails every comparison
-        high = simd::max(d, high);
-      }
-      directions_min[k] = simd::min(low);
-      directions_max[k] = simd::max(high);
-    }
+    set_directions([this](std::size_t j) noexcept -> Directions {
+      return {simd::load<simd::Doubles>(x[j]), simd::load<simd::Doubles>(y[j]), simd::load<simd::Doubles>(z[j])};
+    });
   }
 
  private:
+  /// Minimum and maximum of a column that is being set.
+  struct Extremes {
+    simd::Doubles low = simd::Doubles{} + detail::infinity, high = -low;
+    [[gnu::always_inline]] void take(const simd::Doubles& d, double& to) noexcept {
+      simd::store(d, to);
+      low = simd::min(d, low);  // NaN fails every comparison
+      high = simd::max(d, high);
+    }
+  };
+
+  /// The first `number` lanes, and copies of the last of them.
+  static simd::Doubles filled(const simd::Doubles& d, std::size_t number) noexcept {
+    if (number == 1) return d[0] - simd::Doubles{};
+    const auto lane = simd::generate([](std::size_t k) { return static_cast<double>(k); });
+    return lane < static_cast<double>(number) ? d : d[number - 1] - simd::Doubles{};  // a zero keeps its sign
+  }
+
   void copy_directions(const RayBundle& other) noexcept {
     for (std::size_t j = 0; j < padded_size(); ++j) set_direction(j, other.direction(j));
     directions_min = other.directions_min;

@@ -81,15 +81,13 @@ class SubrayDirections {
   /// Sets the directions of a bundle, whose size is set, from those of subrays `first` on.
   void to_world(const Matrix3& world_from_beam, std::size_t first, RayBundle& rays) const noexcept {
     const Vec3 across = world_from_beam[0], ahead = world_from_beam[1], above = world_from_beam[2];
-    for (std::size_t j = 0; j < rays.size; j += simd::lane_count) {
+    rays.set_directions([&](std::size_t j) noexcept -> RayBundle::Directions {
       const simd::Doubles right = simd::load<simd::Doubles>(x[first + j]),
                           forward = simd::load<simd::Doubles>(y[first + j]),
                           up = simd::load<simd::Doubles>(z[first + j]);
-      simd::store(simd::Doubles(right * across.x + forward * ahead.x + up * above.x), rays.x[j]);
-      simd::store(simd::Doubles(right * across.y + forward * ahead.y + up * above.y), rays.y[j]);
-      simd::store(simd::Doubles(right * across.z + forward * ahead.z + up * above.z), rays.z[j]);
-    }
-    rays.pad();
+      return {right * across.x + forward * ahead.x + up * above.x, right * across.y + forward * ahead.y + up * above.y,
+              right * across.z + forward * ahead.z + up * above.z};
+    });
   }
 
  private:

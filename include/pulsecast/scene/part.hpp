@@ -111,12 +111,11 @@ struct Placement {
     local.origin = back * (rays.origin - translation);
     local.direction_length = rays.direction_length * per_metre;
     const Vec3 x = back[0], y = back[1], z = back[2];
-    for (std::size_t j = 0; j < rays.padded_size(); ++j) {
-      local.x[j] = x.x * rays.x[j] + y.x * rays.y[j] + z.x * rays.z[j];
-      local.y[j] = x.y * rays.x[j] + y.y * rays.y[j] + z.y * rays.z[j];
-      local.z[j] = x.z * rays.x[j] + y.z * rays.y[j] + z.z * rays.z[j];
-    }
-    local.pad();
+    local.set_directions([&](std::size_t j) noexcept -> RayBundle::Directions {
+      const auto of = [j](const RayBundle::Column& column) noexcept { return simd::load<simd::Doubles>(column[j]); };
+      const simd::Doubles a = of(rays.x), b = of(rays.y), c = of(rays.z);
+      return {x.x * a + y.x * b + z.x * c, x.y * a + y.y * b + z.y * c, x.z * a + y.z * b + z.z * c};
+    });
   }
 };
 

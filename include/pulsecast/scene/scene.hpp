@@ -252,7 +252,8 @@ class Scene {
     for (std::size_t first = 0, end = 0; first < rays.size; first = end) {
       end = first + 1;
       if (!nearest.met(first)) {
-        hits[first] = Hit{};
+        while (end < rays.size && !nearest.met(end)) ++end;
+        std::fill_n(&hits[first], end - first, Hit{});
         continue;
       }
       if (at != nearest.part_of(first)) {

@@ -16,6 +16,7 @@ struct DirectLight {
   struct Workspace {
     std::array<Hit, RayBundle::capacity> hits;  ///< hits of a bundle
     bool met_nothing = false;                   ///< true if the last pulse met nothing
+    unsigned pass = 0;                          ///< pulses until another test of a cone, after one in vain
     SubrayDirections slope{};                   ///< subrays for a smooth surface
   };
 
@@ -27,8 +28,8 @@ struct DirectLight {
     return {.hits = {}, .slope = spreads(subrays) ? SubrayDirections::room(slope_subrays_max) : SubrayDirections()};
   }
 
-  /// Traces all subrays. After a pulse that met nothing, the beam's cone is tested first: the next
-  /// one often meets nothing, too. Asks rays that return again for velocities, if `with_velocity`.
+  /// Traces all subrays. After a pulse that met nothing, the beam's cone is tested first: the next one
+  /// often meets nothing, too. Asks rays that return again for velocities, if `with_velocity`.
   // always inlined: a footprint of one subray is then known to be one, which saves 140 instructions
   template <bool with_velocity = false, Target Target>
   [[nodiscard, gnu::always_inline]] TransportResult trace(const Target& target, const TransportInput& light,
@@ -36,11 +37,13 @@ struct DirectLight {
                                                           std::span<Reflection> reflections) const noexcept {
     TransportResult result;
     const bool may_spread = !with_velocity && spreads(light.subrays);  // while one is known to be one
-    if (w.met_nothing && light.subrays > 1 && light.beam.from_a_point() && light.record.empty() &&
-        misses(target, light)) {
-      result.energy.sent = light.energy();
-      result.energy.missed = light.beam.share_sum * result.energy.sent;
-      return result;
+    if (w.met_nothing && light.subrays > 1 && light.beam.from_a_point() && light.record.empty()) {
+      if (w.pass == 0 && misses(target, light)) {
+        result.energy.sent = light.energy();
+        result.energy.missed = light.beam.share_sum * result.energy.sent;
+        return result;
+      }
+      w.pass = w.pass == 0 ? 3 : w.pass - 1;
     }
     trace_subrays<with_velocity>(target, light, w, reflections, result);
     w.met_nothing = result.fate == Fate::missed;
@@ -82,6 +85,7 @@ struct DirectLight {
       if (!from_a_point) rays.origin = light.pulse.origin() + world_from_beam * beam.exits[first];
       beam.to_world(world_from_beam, first, rays);
       find_hits(target, rays, w.hits);
+      if (all_missed(light, first, std::span(w.hits).first(rays.size), missed)) continue;
       detail::received_power(light, &beam.shares[first], rays.size, w.hits, power);
       if (!light.record.empty()) detail::record_subrays(light, first, std::span(w.hits).first(rays.size), power);
       for (std::size_t j = 0; j < rays.size; ++j) {
@@ -119,6 +123,15 @@ struct DirectLight {
                      .absorbed = absorbed * sent,
                      .scattered = scattered * sent,
                      .received = received * light.emitter.laser.pulse_length};
+  }
+
+  /// Adds the shares of subrays from `first` on to `missed`, and returns true, if none meets anything.
+  static bool all_missed(const TransportInput& light, std::size_t first, std::span<const Hit> hits,
+                         double& missed) noexcept {
+    for (const Hit& hit : hits)
+      if (hit.range != detail::infinity || !light.record.empty()) return false;  // a NaN is none
+    for (std::size_t j = 0; j < hits.size(); ++j) missed += light.beam.shares[first + j];
+    return true;
   }
 
   /// True only if no subray of a beam from a point meets anything.

@@ -57,6 +57,11 @@ class IdealSamples {
   /// Continuous returns in a peak, as `echo_of` takes them.
   [[nodiscard]] auto continuous() const noexcept { return rises_.sources(0); }
 
+  /// Appends samples of reflections alone, after which the section goes on, to `y`.
+  void append(std::vector<double>& y) noexcept {
+    if (continuous_.empty() && !noisy() && record_size_ == 0) sum_->append(y, tail_, died_away_ / interval_);
+  }
+
   /// Number of the next sample of the section.
   [[nodiscard]] double number() const noexcept { return sum_->sample(); }
 

@@ -37,16 +37,17 @@ namespace detail {
   return {.object = r.object, .classification = r.classification, .kind = r.kind};
 }
 
-/// True if a reflection can be an echo: of power, and nearer than 2^52 samples.
-[[nodiscard]] inline bool can_count(const Reflection& r, double sample_interval) noexcept {
-  return r.power > 0 && r.range < 0x1p51 * speed_of_light * sample_interval;
+/// True if a reflection can be an echo, by power [W] and range [m], or lanes of them: of power, and
+/// nearer than 2^52 samples.
+[[nodiscard]] inline auto can_count(const auto& power, const auto& range, double sample_interval) noexcept {
+  return (power > 0) & (range < 0x1p51 * speed_of_light * sample_interval);
 }
 
 /// Sorts reflections by range and drops those that cannot be echoes.
 [[nodiscard]] inline std::span<Reflection> in_order_of_range(std::span<Reflection> all,
                                                              double sample_interval) noexcept {
   const auto nearer = [](const Reflection& a, const Reflection& b) { return a.range < b.range; };
-  const auto useless = [&](const Reflection& r) { return !can_count(r, sample_interval); };
+  const auto useless = [&](const Reflection& r) { return !can_count(r.power, r.range, sample_interval); };
   Reflection* const begin = all.data();
   Reflection* const end = std::remove_if(begin, begin + all.size(), useless);
   if (!std::is_sorted(begin, end, nearer)) std::sort(begin, end, nearer);
@@ -88,20 +89,91 @@ class SampledSum {
 
   /// Returns the sum at the next sample [W] and advances.
   double power() noexcept {
-    second_ = decay_ * (second_ + step_ * (2 * first_ + step_ * zeroth_));
-    first_ = decay_ * (first_ + step_ * zeroth_);
-    zeroth_ *= decay_;
+    sum_.advance(step_, decay_);
     for (const double t = time(); next_edge_ <= t; ++next_, find_next_edge()) {
-      const double u = (t - next_edge_) / shape_.tau, p = reflections_[next_].power * exponential(-u);
-      zeroth_ += p;
-      first_ += p * u;
-      second_ += p * u * u;
+      const double u = (t - next_edge_) / shape_.tau;
+      sum_.add(u, reflections_[next_].power * exponential(-u));
     }
     ++sample_;
-    return second_ * PulseShape::to_unit_peak;
+    return sum_.power();
+  }
+
+  /// Appends samples, as of `power`, up to a number, or until the last pulse peaked `tail` ago [s] and
+  /// the next edge is more than `gap` samples ahead. That must not have passed.
+  void append(std::vector<double>& y, double tail, double gap) noexcept {
+    std::array<double, 128> samples;
+    double* to = samples.data();
+    Moments sum = sum_;  // copies stay in registers
+    double n = sample_;
+    const double full = n + static_cast<double>(std::min(samples.size(), y.capacity() - y.size() - 1));
+    Edges edges;
+    std::size_t lane = find_edges(edges);
+    if (edges.sample[0] <= n + gap && edges.sample[0] < full) {
+      sum.advance(step_, decay_);
+      do {
+        for (; n < edges.sample[lane]; ++n) {
+          *to++ = sum.power();
+          sum.advance(step_, decay_);
+        }
+        sum.add(edges.age[lane], edges.weight[lane]);
+        ++next_;
+        if (++lane == simd::lane_count) lane = find_edges(edges);
+      } while (edges.sample[lane] <= n + gap && edges.sample[lane] < full);
+      *to++ = sum.power();
+      ++n;
+    }
+    const double heard = next_ > 0 ? last_peak() + tail : -std::numeric_limits<double>::infinity();
+    for (const double end = std::min(edges.sample[lane], full); n < end && n * interval_ <= heard; ++n) {
+      sum.advance(step_, decay_);
+      *to++ = sum.power();
+    }
+    y.insert(y.end(), samples.data(), to);
+    sum_ = sum;
+    sample_ = n;
+    find_next_edge();
   }
 
  private:
+  struct Moments {
+    double zeroth = 0, first = 0, second = 0;
+
+    void advance(double step, double decay) noexcept {
+      second = decay * (second + step * (2 * first + step * zeroth));
+      first = decay * (first + step * zeroth);
+      zeroth *= decay;
+    }
+    void add(double u, double p) noexcept {
+      zeroth += p;
+      first += p * u;
+      second += p * u * u;
+    }
+    [[nodiscard]] double power() const noexcept { return second * PulseShape::to_unit_peak; }
+  };
+
+  /// Edges of successive reflections: the number of the first sample that is not before one, infinite
+  /// beyond the last, its age there [tau], and P e^-u [W].
+  struct Edges {
+    std::array<double, simd::lane_count> sample, age, weight;
+  };
+  /// Sets those of the next reflections; returns the first lane.
+  std::size_t find_edges(Edges& edges) const noexcept {
+    const std::size_t left = reflections_.size() - next_;
+    const Reflection* const from = reflections_.data() + (left > 0 ? next_ : 0);
+    const auto of = [&](double Reflection::*member) noexcept {
+      return simd::generate([&](std::size_t lane) noexcept { return from[lane < left ? lane : 0].*member; });
+    };
+    const simd::Doubles edge = 2 * of(&Reflection::range) / speed_of_light - PulseShape::peak * shape_.tau;
+    const simd::Doubles whole = simd::floor(edge / interval_), at = whole * interval_, then = (whole + 1) * interval_;
+    const auto later = at < edge;  // or at the sample `whole`, as rounded
+    const simd::Doubles age = ((later ? then : at) - edge) / shape_.tau;
+    simd::store(later ? whole + 1 : whole, edges.sample);
+    simd::store(age, edges.age);
+    simd::store(simd::Doubles(of(&Reflection::power) * exponential(simd::Doubles(-age))), edges.weight);
+    for (std::size_t lane = left; lane < simd::lane_count; ++lane)
+      edges.sample[lane] = std::numeric_limits<double>::infinity();
+    return 0;
+  }
+
   void find_next_edge() noexcept {
     next_edge_ = all_in() ? std::numeric_limits<double>::infinity()
                           : arrival(reflections_[next_]) - PulseShape::peak * shape_.tau;
@@ -113,7 +185,7 @@ class SampledSum {
   std::size_t next_;
   double next_edge_ = 0;  ///< leading edge of reflection `next_` [s]
   double sample_;
-  double zeroth_ = 0, first_ = 0, second_ = 0;
+  Moments sum_{};
 };
 
 }  // namespace PULSECAST_NAMESPACE

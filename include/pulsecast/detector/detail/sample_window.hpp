@@ -26,6 +26,7 @@ class SampleWindow {
   SampleWindow() { samples_.reserve(capacity); }
 
   void clear() noexcept { samples_.clear(); }
+  [[nodiscard]] std::vector<double>& samples() noexcept { return samples_; }  ///< in the window [W]
 
   [[nodiscard]] bool empty() const noexcept { return samples_.empty(); }  ///< true without samples
 

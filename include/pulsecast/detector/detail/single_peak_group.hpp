@@ -31,32 +31,36 @@ class SinglePeakGroup {
                   Workspace& w) noexcept
       : reflections_(reflections), ages_(w.ages.data()), weights_(w.weights.data()), per_tau_(1 / shape.tau) {
     if (reflections.empty() || reflections.size() + simd::lane_count > w.ages.size()) return;
-    double nearest = std::numeric_limits<double>::infinity(), farthest = 0;
-    bool useful = true;
-    for (const Reflection& r : reflections) {
-      nearest = r.range < nearest ? r.range : nearest;
-      farthest = r.range > farthest ? r.range : farthest;
-      useful &= can_count(r, sample_interval);
+    const std::size_t n = reflections.size();
+    simd::Doubles low = simd::Doubles{} + std::numeric_limits<double>::infinity(), high{};
+    simd::Mask useless{};
+    for (std::size_t next = 0; next < n; next += simd::lane_count) {
+      const std::size_t j = n < simd::lane_count ? 0 : std::min(next, n - simd::lane_count);  // the last ones overlap
+      const auto of = [&](double Reflection::*member) noexcept {
+        return simd::generate(
+            [&](std::size_t lane) noexcept { return reflections[j + (lane < n ? lane : 0)].*member; });
+      };
+      const simd::Doubles range = of(&Reflection::range), power = of(&Reflection::power);
+      low = simd::min(range, low);
+      high = simd::max(range, high);
+      useless |= ~can_count(power, range, sample_interval);
+      simd::store(range, ages_[j]);
+      simd::store(power, weights_[j]);
     }
+    const double nearest = simd::min(low), farthest = simd::max(high);
     const double per_metre = 2 / (speed_of_light * shape.tau);
-    one_ = useful && (farthest - nearest) * per_metre < PulseShape::peak;
+    one_ = simd::bits(useless) == 0 && (farthest - nearest) * per_metre < PulseShape::peak;
     if (!one_) return;
     last_edge_ = 2 * farthest / speed_of_light - PulseShape::peak * shape.tau;
 
-    const std::size_t n = reflections.size();
-    for (std::size_t j = 0; j < n; ++j) {
-      ages_[j] = farthest - reflections[j].range;
-      weights_[j] = reflections[j].power;
-    }
-    for (std::size_t j = n; j < n + simd::lane_count; ++j) {
-      ages_[j] = 0;
-      weights_[j] = 0;
-    }
+    std::fill_n(ages_ + n, simd::lane_count, farthest);  // idle lanes
+    std::fill_n(weights_ + n, simd::lane_count, 0.0);
     double all_power = 0, all_before = 0;
     for (std::size_t part = 0; part < simd::sum_stride; part += simd::lane_count) {
       simd::Doubles power{}, before{}, zeroth{}, first{}, second{};
       for (std::size_t j = part; j < n; j += simd::sum_stride) {
-        const auto distance = simd::load<simd::Doubles>(ages_[j]), p = simd::load<simd::Doubles>(weights_[j]);
+        const simd::Doubles distance = farthest - simd::load<simd::Doubles>(ages_[j]);
+        const auto p = simd::load<simd::Doubles>(weights_[j]);
         const simd::Doubles age = distance * per_metre, weight = p * exponential(simd::Doubles(-age));
         power += p;
         before += p * distance;
