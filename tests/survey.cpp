@@ -3,10 +3,15 @@
 #include <pulsecast/survey.hpp>
 
 #include <algorithm>
+#include <array>
+#include <atomic>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <memory>
 #include <optional>
+#include <span>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -23,13 +28,19 @@
 #include <pulsecast/detector/returns.hpp>
 #include <pulsecast/platform/platform.hpp>
 #include <pulsecast/platform/tripod.hpp>
+#include <pulsecast/result_buffer.hpp>
 #include <pulsecast/scanner/channels.hpp>
 #include <pulsecast/scanner/scanner.hpp>
+#include <pulsecast/scene/moving_scene.hpp>
+#include <pulsecast/shape/transmissive_voxels.hpp>
+#include <pulsecast/shape/triangle_mesh.hpp>
+#include <pulsecast/shape/voxel_grid.hpp>
 
 #include "support/archetypes.hpp"
 #include "support/generators.hpp"
 #include "support/laws.hpp"
 #include "support/relative.hpp"
+#include "support/scenes.hpp"
 
 using namespace pulsecast;
 using namespace pulsecast::literals;
@@ -947,4 +958,111 @@ TEST_CASE("a turned footprint is the same beam, turned by the number of the puls
   CHECK(met / 500 == support::relative(0.5, 0.02));
   CHECK(alike < 300);
   CHECK_THROWS_AS(survey_of(1, {.divergence = {1e-3, 2e-3}}), SettingError);
+}
+
+namespace {
+
+/// Pulses of some emitters, in turn or at random, some of them blocked; the place jumps now and then.
+struct Erratic {
+  std::uint64_t seed;
+  PulseIndex pulses;
+  std::size_t emitter_count;
+
+  PulseIndex size() const noexcept { return pulses; }
+  Tick duration() const noexcept { return Tick::of(pulses, 1000); }
+  std::vector<Emitter> emitters() const {
+    std::vector<Emitter> all(emitter_count);
+    for (std::size_t k = 0; k < emitter_count; ++k) {
+      all[k].channel = static_cast<std::uint16_t>(k);
+      all[k].laser.wavelength = 1e-6 * (1 + 0.1 * static_cast<double>(k));
+      if (seed % 3 == 0) all[k].laser.waist_diameter = 0.01;
+    }
+    return all;
+  }
+  std::optional<Pulse<frame::World>> pulse(PulseIndex i) const noexcept {
+    const auto draw = [&](std::uint32_t what, PulseIndex n) { return uniform({seed, n, what, Purpose::scene}); };
+    if (draw(0, i) < 0.1 || draw(0, i / 40) < 0.2) return std::nullopt;
+    const PulseIndex leg = i / 50;
+    const double turn = 2 * pi * draw(1, leg) + 1e-3 * static_cast<double>(i % 50);
+    const std::size_t emitter = draw(2, leg) < 0.7 ? i : static_cast<std::size_t>(draw(3, i) * 1000);
+    Pulse<frame::World> p;
+    p.tick = Tick::of(i, 1000);
+    p.emitter = static_cast<std::uint16_t>(emitter % emitter_count);
+    p.pose = {rotation_about(axis::up, turn) * rotation_about(axis::right, 0.05 * p.emitter - 0.3),
+              Vec3{5 * draw(4, leg), 5 * draw(5, leg) + 1e-3 * static_cast<double>(i % 50), 5}};
+    if (draw(6, leg) < 0.3) p.reported = {p.pose.rotation, p.pose.position + Vec3{0.1, 0, 0}};
+    p.leg = static_cast<std::uint16_t>(leg);
+    return p;
+  }
+};
+static_assert(WorldSource<Erratic>);
+
+/// Map that counts the rays that were traced together.
+template <class Map>
+struct Counted : Map {
+  std::shared_ptr<std::atomic<std::size_t>> together = std::make_shared<std::atomic<std::size_t>>(0);
+  using Map::closest;
+  void closest(const pulsecast::detail::RaySheaf& rays, double wavelength, std::span<Hit> hits) const noexcept {
+    *together += rays.size;
+    Map::closest(rays, wavelength, hits);
+  }
+};
+
+}  // namespace
+
+TEST_CASE("pulses of one ray in order are those of single calls, to the bit, and many are traced together") {
+  using Moving = MovingScene<TriangleMesh<>, VoxelGrid<TransmissiveVoxels>>;
+  std::size_t together = 0, echoes = 0;
+  std::array<std::size_t, fate_count> fates{};
+  for (std::uint64_t seed = 1; seed <= 40; ++seed) {
+    CAPTURE(seed);
+    support::Generator any(seed);
+    std::vector<Moving::Part> parts;
+    for (int k = 0; k < 4; ++k) {
+      Moving::Part part;
+      part.geometry = std::make_shared<const TriangleMesh<>>(support::soup(any, 200, 10));
+      part.materials = material_table({{.reflectance = k == 0 ? 0 : any.uniform()}});
+      part.placement = {any.rotation(), any.log_uniform(0.5, 2), any.point(10)};
+      if (k > 2) part.motion = std::make_shared<const PartMotion>(SteadyMotion{.velocity = any.point(10)});
+      parts.push_back(part);
+    }
+    VoxelData leaves{.edge = 2};
+    for (std::uint32_t k = 0; k < 16; ++k) leaves.cells.push_back({k % 4, k / 4, 0});
+    leaves.densities.assign(leaves.cells.size(), 0.3F);
+    Moving::Part crown;
+    crown.geometry = std::make_shared<const VoxelGrid<TransmissiveVoxels>>(leaves);
+    crown.materials = material_table();
+    crown.placement.translation = any.point(5);
+    parts.push_back(crown);
+    const Counted<Moving> map{Moving(parts, {.to = 1})};
+    const Erratic source{seed, 600, seed % 4 == 0 ? 1 : 1 + any.whole(seed % 5 == 0 ? 200 : 9)};
+    const Receiver receiver{.range_min = 3, .range_max = 25, .range_errors = {.deviation = any.coin() ? 0.05 : 0}};
+    const Survey survey{source, SingleRay{}, map, receiver, FirstHit{.threshold = any.coin() ? 0 : 1e-4}, seed};
+    auto alone = survey.workspace(), in_order = survey.workspace();
+    const PulseIndex first = any.whole(300), end = first + 1 + any.whole(300);
+    PulseIndex expected = first;
+    survey.simulate_in_order(first, end, in_order, [&](const Outcome& b) {
+      const Outcome a = survey(expected, alone);
+      const auto sum = [](const Outcome& o) {
+        ResultBuffer result;
+        result.append(o);
+        support::Checksum all;
+        all.add(result.batch(0));
+        return all.hex();
+      };
+      CHECK(b.shot.index == expected);
+      CHECK(sum(a) == sum(b));
+      CHECK(a.energy == b.energy);
+      CHECK(a.shot.fate == b.shot.fate);
+      CHECK(a.error == b.error);
+      ++fates[static_cast<std::size_t>(a.shot.fate)];
+      echoes += b.echoes.size();
+      return expected += any.whole(20) == 0 ? 1 + any.whole(30) : 1;  // as after a blocked slot
+    });
+    CHECK(expected >= end);
+    together += *map.together;
+  }
+  CHECK(together > 1000);
+  CHECK(echoes > 300);
+  for (const std::size_t count : fates) CHECK(count > 0);
 }

@@ -145,7 +145,13 @@ struct PulseLanes : detail::LanesOnPlatform<Frame> {
   /// Pulse of a lane; empty if it is blocked.
   [[nodiscard]] std::optional<Pulse<Frame>> operator[](std::size_t lane) const noexcept {
     std::optional<Pulse<Frame>> p;
-    if (sent[lane] == 0) return p;
+    get(lane, p);
+    return p;
+  }
+  /// As above, into memory of the caller.
+  [[gnu::always_inline]] void get(std::size_t lane, std::optional<Pulse<Frame>>& p) const noexcept {
+    p.reset();
+    if (sent[lane] == 0) return;
     p.emplace();
     p->tick = tick[lane];
     p->pose = pose[lane];
@@ -155,7 +161,6 @@ struct PulseLanes : detail::LanesOnPlatform<Frame> {
       p->scan_angle = this->scan_angle[lane];
       p->leg = this->leg[lane];
     }
-    return p;
   }
 
   /// Appends the next slot, of which there are less than `simd::lane_count`.

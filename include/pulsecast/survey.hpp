@@ -64,12 +64,30 @@ class Survey : public EchoSimulator<Footprint, Target, Detector, Transport> {
   /// As the concept SimulatesInOrder requires: pulses are made by the register, which does not outlive the call.
   template <class Next>
   void simulate_in_order(PulseIndex i, PulseIndex end, Workspace& w, const Next& next) const {
-    PulseLanes<frame::World> pulses;
-    for (PulseIndex first = i; i < end; i = next(Echoes::operator()(i, pulses[i - first], w)))
-      if (i - first >= pulses.size) {
-        first = i;
-        pulses = find_pulses(source_, i, end - i < simd::lane_count ? end - i : simd::lane_count);
+    const auto lanes = [](PulseIndex slots) { return slots < simd::lane_count ? slots : simd::lane_count; };
+    if constexpr (Echoes::in_blocks) {
+      std::size_t slots = 0;
+      for (PulseIndex first = i; i < end;) {
+        if (i - first >= slots) {
+          first = i;
+          const PulseIndex last = i + std::min<PulseIndex>(end - i, Echoes::block_size());
+          for (slots = 0; first + slots < last;) {
+            const auto pulses = find_pulses(source_, first + slots, lanes(last - first - slots));
+            for (std::size_t lane = 0; lane < pulses.size; ++lane) pulses.get(lane, w.pulses[slots++]);
+          }
+          Echoes::trace_block(first, slots, w);
+        }
+        const std::optional<Hit>& hit = w.hits[i - first];
+        i = next(Echoes::operator()(i, w.pulses[i - first], w, hit ? &*hit : nullptr));
       }
+    } else {
+      PulseLanes<frame::World> pulses;
+      for (PulseIndex first = i; i < end; i = next(Echoes::operator()(i, pulses[i - first], w)))
+        if (i - first >= pulses.size) {
+          first = i;
+          pulses = find_pulses(source_, i, lanes(end - i));
+        }
+    }
   }
 
  private:

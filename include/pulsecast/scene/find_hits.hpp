@@ -4,6 +4,7 @@
 #define PULSECAST_SCENE_FIND_HITS_HPP
 
 #include <pulsecast/concepts.hpp>
+#include <pulsecast/geometry/detail/ray_sheaf.hpp>
 #include <pulsecast/material/material.hpp>
 
 namespace PULSECAST_NAMESPACE {
@@ -43,6 +44,14 @@ concept Bounded = requires(const T& map) {
 template <class T>
 concept FindsGround = requires(const T& map) {
   map.ground_height(Vec2{}, 0.0);
+};
+
+/// Target that finds the hits of pulses of one ray together, those of a bundle of one each.
+template <class T>
+concept TracesSheaves = VisitsMaterials<T> &&
+    requires(const T target, const RaySheaf& rays, double wavelength, std::span<Hit> hits) {
+  { target.closest(rays, wavelength, hits) }
+  noexcept;
 };
 
 template <class Target, class Visitor>

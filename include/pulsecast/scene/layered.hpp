@@ -32,6 +32,19 @@ class Layered {
         },
         targets_);
   }
+  /// As above, of each ray of a sheaf.
+  void closest(const detail::RaySheaf& rays, double wavelength, std::span<Hit> hits) const noexcept
+      requires(detail::TracesSheaves<First>&&...&& detail::TracesSheaves<Others>) {
+    detail::RaySheaf rest = rays;
+    std::array<Hit, detail::RaySheaf::capacity> others;
+    each([&](std::uint32_t i, const auto& target) noexcept {
+      target.closest(rest, wavelength, i == 0 ? hits : others);
+      for (std::size_t j = 0; j < rays.size; ++j) {
+        if (i > 0 && is_nearer(others[j], hits[j])) hits[j] = others[j];
+        rest.far[j] = std::min(rest.far[j], hits[j].range);
+      }
+    });
+  }
   /// As above, and visits the surfaces. These four exist if all targets have `SceneQueries`.
   template <class Visitor>
   requires(answers) void closest(const StaggeredBundle& rays, std::span<Hit> hits,

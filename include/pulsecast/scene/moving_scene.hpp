@@ -66,6 +66,19 @@ class MovingScene {
     describe(rays, hits, visit);
   }
 
+  /// As above, of each ray of a sheaf at its own tick; parts that move are met ray by ray.
+  void closest(const detail::RaySheaf& rays, double wavelength, std::span<Hit> hits) const noexcept
+      requires(detail::TakesSingleRays<Shapes>&&...) {
+    detail::SheafHits nearest(rays);
+    scene_.search(rays, nearest);
+    for (std::size_t j = 0; j < rays.size; ++j) {
+      search_movers(rays.rays[j], nearest.of[j]);
+      const auto placement_of = [&](std::size_t part) noexcept { return placement(part, rays.rays[j].tick); };
+      scene_.describe(rays.rays[j], nearest.of[j], wavelength, hits.subspan(j, 1), placement_of,
+                      typename Scene<Shapes...>::AskLaws{});
+    }
+  }
+
   void closest(const RayBundle& rays, ClosestHits& hits) const noexcept { search(rays, hits); }
 
   [[nodiscard]] bool misses_cone(const RayCone& cone) const noexcept {
@@ -118,12 +131,16 @@ class MovingScene {
     ClosestHits nearest(rays);
     search(rays, nearest);
     const auto placement_of = [&](std::size_t part) noexcept { return placement(part, rays.tick); };
-    scene_.describe(rays, nearest, hits, placement_of, visit);
+    scene_.describe(rays, nearest, rays.wavelength, hits, placement_of, visit);
   }
 
   template <class Rays, class Hits>
   void search(const Rays& rays, Hits& hits) const noexcept {
     scene_.search(rays, hits);
+    search_movers(rays, hits);
+  }
+  template <class Rays, class Hits>
+  void search_movers(const Rays& rays, Hits& hits) const noexcept {
     const auto test = [&](PrimitiveIndex i) noexcept {
       scene_.closest_in(movers_[i].part, moved(movers_[i], rays.tick), rays, hits);
     };

@@ -5,7 +5,6 @@
 
 #include <pulsecast/accel/refit.hpp>
 #include <pulsecast/geometry/detail/bundle_budget.hpp>
-#include <pulsecast/scene/detail/ray_queries.hpp>
 #include <pulsecast/scene/detail/surface_sample.hpp>
 #include <pulsecast/scene/find_hits.hpp>
 
@@ -101,12 +100,21 @@ class Scene {
 
   /// Nearest hit of each ray of the bundle, one per ray. Ties between parts go to the first.
   void closest(const RayBundle& rays, std::span<Hit> hits) const noexcept {
-    describe(rays, nearest(rays), hits, placements(), AskLaws{});
+    describe(rays, nearest(rays), rays.wavelength, hits, placements(), AskLaws{});
   }
   /// As above, and visits the surfaces in place of asking their laws, as with `SceneQueries`.
   template <class Visitor>
   void closest(const StaggeredBundle& rays, std::span<Hit> hits, const Visitor& visit) const noexcept {
-    describe(rays, nearest(rays), hits, placements(), visit);
+    describe(rays, nearest(rays), rays.wavelength, hits, placements(), visit);
+  }
+
+  /// As above, of each ray of a sheaf.
+  void closest(const detail::RaySheaf& rays, double wavelength, std::span<Hit> hits) const noexcept
+      requires(detail::TakesSingleRays<Shapes>&&...) {
+    detail::SheafHits nearest(rays);
+    search(rays, nearest);
+    for (std::size_t j = 0; j < rays.size; ++j)
+      describe(rays.rays[j], nearest.of[j], wavelength, hits.subspan(j, 1), placements(), AskLaws{});
   }
 
   /// Offers the hits of the rays of a bundle to `hits`, by part and primitive.
@@ -231,7 +239,15 @@ class Scene {
 
   template <class Rays, class Hits>
   void closest_in(std::size_t part, const Placement& placement, const Rays& rays, Hits& nearest) const noexcept {
-    placement.identity() ? closest_in(part, rays, nearest) : closest_in(part, placement.to_local(rays), nearest);
+    if (placement.identity()) return closest_in(part, rays, nearest);
+    if constexpr (std::is_same_v<Rays, detail::RaySheaf>) {
+      Rays local;
+      for (std::size_t j = 0; j < rays.size; ++j) local.push_back(placement.to_local(rays.rays[j]), rays.far[j]);
+      if (local.enclose()) return closest_in(part, local, nearest);
+      for (std::size_t j = 0; j < rays.size; ++j) closest_in(part, local.rays[j], nearest.of[j]);
+    } else {
+      closest_in(part, placement.to_local(rays), nearest);
+    }
   }
   /// `local` are rays in the frame of the part.
   template <class Rays, class Hits>
@@ -243,12 +259,13 @@ class Scene {
 
   /// Sets the geometry of the hits of rays, and visits their surfaces, by the placements of parts.
   template <class PlacementOf, class Visitor>
-  void describe(const RayBundle& rays, const ClosestHits& nearest, std::span<Hit> hits, const PlacementOf& placement_of,
-                const Visitor& visit) const noexcept {
+  void describe(const auto& rays, const auto& nearest, double wavelength, std::span<Hit> hits,
+                const PlacementOf& placement_of, const Visitor& visit) const noexcept {
+    using Rays = std::conditional_t<(std::remove_cvref_t<decltype(rays)>::capacity > 1), RayBundle, SingleRayPacket>;
     constexpr std::size_t nothing = std::size_t(-1);
     std::size_t at = nothing;  // part of the frame of `local`
-    const RayBundle* local = &rays;
-    RayBundle turned;
+    const Rays* local = &rays;
+    Rays turned;
     for (std::size_t first = 0, end = 0; first < rays.size; first = end) {
       end = first + 1;
       if (!nearest.met(first)) {
@@ -259,9 +276,9 @@ class Scene {
       if (at != nearest.part_of(first)) {
         at = nearest.part_of(first);
         const Placement& placement = placement_of(at);
-        local = placement.identity() ? &rays : &(turned = placement.to_local(rays));
+        local = placement.identity() ? &rays : &(turned = placement.to_local(static_cast<const Rays&>(rays)));
       }
-      const detail::SurfaceSampler<Part> sampler{parts_[at], nearest.primitive_of(first), *local, first};
+      const detail::SurfaceSampler<Part, Rays> sampler{parts_[at], nearest.primitive_of(first), *local, first};
       const detail::SurfaceSample surface = visit_shape(sampler, parts_[at].geometry);
       // neighbouring rays often hit the same primitive
       while (end < rays.size && nearest.id[end] == nearest.id[first] && surface.uniform) ++end;
@@ -278,7 +295,7 @@ class Scene {
         hit.classification = classification;
       }
       if constexpr (std::is_same_v<Visitor, AskLaws>)
-        scatter_at(*surface.material, rays.wavelength, surface.texture, hits.subspan(first, end - first));
+        scatter_at(*surface.material, wavelength, surface.texture, hits.subspan(first, end - first));
       else
         visit(first, end,
               SurfaceInteraction{.normal = placement_of(at).rotation * surface.normal,

@@ -104,6 +104,12 @@ class TriangleMesh {
     }
   }
 
+  /// As for each ray of a sheaf, in one traversal.
+  void closest(const detail::RaySheaf& rays, detail::SheafHits& nearest)
+      const noexcept requires std::is_same_v<Index, Bvh<float>> && std::is_same_v<Masks, detail::NoMasks> {
+    index_.closest(rays, Test<detail::RaySheaf, detail::SheafHits>(*this, rays, nearest), nearest);
+  }
+
   /// True only if no ray of a cone comes near a triangle.
   [[nodiscard]] bool misses_cone(const RayCone& cone) const noexcept requires MissesCones<Index> {
     return index_.misses_cone(cone);
@@ -150,19 +156,25 @@ class TriangleMesh {
   /// Leaf test and prefetch of the index.
   template <class Rays, class Hits>
   struct Test {
+    static constexpr bool alone = Rays::capacity == 1, in_sheaf = std::is_same_v<Rays, detail::RaySheaf>;
+    static constexpr bool by_line = alone || in_sheaf;
+
     const TriangleMesh& mesh;
     const Rays& rays;
     Hits& nearest;
-    LineTest line{};  ///< of a single ray
+    std::array<LineTest, by_line ? Rays::capacity : 1> lines{};  ///< of a single ray, or of each of a sheaf
 
     Test(const TriangleMesh& of, const Rays& by, Hits& found) noexcept : mesh(of), rays(by), nearest(found) {
-      if constexpr (alone) line = LineTest(by, of.bounds());
+      if constexpr (alone) lines[0] = LineTest(by, of.bounds());
+      if constexpr (in_sheaf)
+        for (std::size_t j = 0; j < by.size; ++j) {
+          lines[j] = LineTest(by.rays[j], of.bounds());
+          found.of[j].part = found.part;
+        }
     }
 
-    static constexpr bool alone = Rays::capacity == 1;
-
     void operator()(std::span<const PrimitiveIndex> primitives) const noexcept {
-      const std::size_t place = place_of(primitives), room = alone ? simd::lane_count : primitives.size();
+      const std::size_t place = place_of(primitives), room = by_line ? simd::lane_count : primitives.size();
       if (primitives.size() - 1 >= std::min(room, detail::chunk_size - place % detail::chunk_size)) [[unlikely]]
         return in_blocks(primitives, room);  // or none
       const Vec3* const corners = mesh.block_corners(place);
@@ -179,7 +191,11 @@ class TriangleMesh {
                                      const auto& solid) const noexcept {
       if constexpr (alone) {
         const TrianglePacket packet(primitives.size(), triangle_of);
-        if (line.may_meet(packet)) intersect(packet, primitives, rays, nearest, solid);
+        if (lines[0].may_meet(packet)) intersect(packet, primitives, rays, nearest, solid);
+      } else if constexpr (in_sheaf) {
+        const TrianglePacket packet(primitives.size(), triangle_of);
+        for (std::size_t j = 0; j < rays.size; ++j)
+          if (lines[j].may_meet(packet)) intersect(packet, primitives, rays.rays[j], nearest.of[j], solid);
       } else {
         intersect(primitives, triangle_of, rays, nearest, solid);
       }

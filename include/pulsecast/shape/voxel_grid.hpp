@@ -5,7 +5,6 @@
 
 #include <pulsecast/concepts.hpp>
 #include <pulsecast/geometry/detail/bundle_interval.hpp>
-#include <pulsecast/geometry/single_ray.hpp>
 #include <pulsecast/shape/detail/voxel_index_builder.hpp>
 #include <pulsecast/shape/transmissive_voxels.hpp>
 

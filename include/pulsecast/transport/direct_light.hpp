@@ -73,8 +73,8 @@ struct DirectLight {
                                                    TransportResult& result) noexcept {
     const SubrayDirections& beam = light.beam;
     RayBundle rays;
-    detail::set_origin(light, rays);
-    const Matrix3 world_from_beam = matrix_of(light.pulse.pose.rotation);
+    if (!light.hit) detail::set_origin(light, rays);
+    const Matrix3 world_from_beam = light.hit ? Matrix3{} : matrix_of(light.pulse.pose.rotation);
     const bool from_a_point = beam.from_a_point();
     double missed = 0, out_of_range = 0, absorbed = 0, scattered = 0, received = 0;
     bool met = false, in_gate = false;
@@ -82,9 +82,12 @@ struct DirectLight {
     for (std::size_t first = 0; first < light.subrays; first += rays.size) {
       rays.first_subray = static_cast<std::uint32_t>(first);
       rays.size = std::min(from_a_point ? RayBundle::capacity : 1, light.subrays - first);
-      if (!from_a_point) rays.origin = light.pulse.origin() + world_from_beam * beam.exits[first];
-      beam.to_world(world_from_beam, first, rays);
-      find_hits(target, rays, w.hits);
+      if (light.hit) {
+        w.hits[0] = *light.hit;
+      } else {
+        detail::set_directions(light, world_from_beam, first, rays);
+        find_hits(target, rays, w.hits);
+      }
       if (all_missed(light, first, std::span(w.hits).first(rays.size), missed)) continue;
       detail::received_power(light, &beam.shares[first], rays.size, w.hits, power);
       if (!light.record.empty()) detail::record_subrays(light, first, std::span(w.hits).first(rays.size), power);

@@ -42,6 +42,8 @@ class EchoSimulator {
     std::vector<decltype(std::declval<const Detector&>().workspace(0))> detectors;  ///< by receiver
     std::uint16_t emitter = 0;                                                      ///< of the last pulse
     WhiteTarget white_target{};                                                     ///< of that emitter
+    std::vector<std::optional<Pulse<frame::World>>> pulses{};                       ///< of a block of slots
+    std::vector<std::optional<Hit>> hits{};                                         ///< of those traced together
   };
 
   [[nodiscard]] Workspace workspace() const;
@@ -62,9 +64,22 @@ class EchoSimulator {
   /// Token of this survey and its copies, which may use each other's workspaces.
   [[nodiscard]] const std::shared_ptr<const void>& identity() const noexcept { return identity_; }
 
-  /// Result of slot i, whose pulse is empty if it is blocked.
-  [[nodiscard]] Outcome operator()(PulseIndex i, const std::optional<Pulse<frame::World>>& pulse,
-                                   Workspace& w) const noexcept;
+  /// Result of slot i, whose pulse is empty if it is blocked, and its hit null unless known.
+  [[nodiscard]] Outcome operator()(PulseIndex i, const std::optional<Pulse<frame::World>>& pulse, Workspace& w,
+                                   const Hit* hit = nullptr) const noexcept;
+
+ protected:
+  /// True if pulses of one emitter are traced together, several in a block of slots.
+  static constexpr bool in_blocks = std::same_as<Footprint, SingleRay> && std::same_as<Transport, DirectLight> &&
+                                    detail::TracesSheaves<Target> && !ReadsVelocity<Detector>;
+
+  /// Slots of a block: so many of each emitter if they fire in turn.
+  [[nodiscard]] std::size_t block_size() const noexcept {
+    constexpr std::size_t most = 512;  // 100 kB of pulses
+    return std::clamp<std::size_t>(emitters_.size() * detail::RaySheaf::capacity, 1, most);
+  }
+  /// Finds the hits of the pulses of a block, whose first slots are these, where it pays.
+  void trace_block(PulseIndex first, std::size_t slots, Workspace& w) const noexcept;
 
  private:
   using Unit = ReceiverUnit<Footprint, Detector>;
@@ -132,13 +147,20 @@ class EchoSimulator {
     return pulse;
   }
 
-  [[nodiscard]] TransportResult trace(const Pulse<frame::World>& pulse, PulseIndex i, const EmitterConstants& constants,
-                                      Workspace& w) const noexcept {
+  [[nodiscard]] TransportInput light_of(const Pulse<frame::World>& pulse, PulseIndex i,
+                                        const EmitterConstants& constants, Workspace& w) const noexcept {
     const Unit& unit = receivers_[constants.emitter.receiver];
     const auto& [emitter, budget, beam, errs] = constants;
     TransportInput light{pulse, i, seed_, emitter, beam, unit.footprint.size(), budget, w.white_target};
     light.gate = unit.receiver.gate();
     if constexpr (recorded) light.record = w.subrays;
+    return light;
+  }
+
+  [[nodiscard]] TransportResult trace(const Pulse<frame::World>& pulse, PulseIndex i, const EmitterConstants& constants,
+                                      Workspace& w, const Hit* hit) const noexcept {
+    TransportInput light = light_of(pulse, i, constants, w);
+    light.hit = hit;
     if constexpr (ReadsVelocity<Detector>)
       return transport_.template trace<true>(*target_, light, w.transport, w.reflections);
     else
@@ -190,12 +212,39 @@ auto EchoSimulator<Footprint, Target, Detector, Transport>::workspace() const ->
               {}};
   for (const Unit& unit : receivers_)
     w.detectors.push_back(unit.detector.workspace(transport_.reflections(unit.footprint.size())));
+  if constexpr (in_blocks) {
+    w.pulses.resize(block_size());
+    w.hits.resize(block_size());
+  }
   return w;
 }
 
 template <Footprint Footprint, Target Target, Detector Detector, Transport<Target> Transport>
+void EchoSimulator<Footprint, Target, Detector, Transport>::trace_block(PulseIndex first, std::size_t slots,
+                                                                        Workspace& w) const noexcept {
+  std::fill_n(w.hits.begin(), slots, std::nullopt);
+  const std::size_t emitters = emitters_.size();
+  std::array<std::size_t, detail::RaySheaf::capacity> slot_of;
+  std::array<Hit, detail::RaySheaf::capacity> hits;
+  for (std::size_t start = 0; start < std::min(slots, emitters); ++start) {
+    detail::RaySheaf rays;
+    const Pulse<frame::World>* alike = nullptr;
+    for (std::size_t slot = start; slot < slots && rays.size < rays.capacity; slot += emitters) {
+      const std::optional<Pulse<frame::World>>& pulse = w.pulses[slot];
+      if (!pulse || (alike && alike->emitter != pulse->emitter)) continue;
+      alike = &*pulse;
+      slot_of[rays.size] = slot;
+      rays.push_back(detail::only_ray(light_of(*pulse, first + slot, emitters_[pulse->emitter], w)), detail::infinity);
+    }
+    if (!rays.enclose()) continue;
+    target_->closest(rays, emitters_[alike->emitter].emitter.laser.wavelength, hits);
+    for (std::size_t j = 0; j < rays.size; ++j) w.hits[slot_of[j]] = hits[j];
+  }
+}
+
+template <Footprint Footprint, Target Target, Detector Detector, Transport<Target> Transport>
 Outcome EchoSimulator<Footprint, Target, Detector, Transport>::operator()(
-    PulseIndex i, const std::optional<Pulse<frame::World>>& pulse, Workspace& w) const noexcept {
+    PulseIndex i, const std::optional<Pulse<frame::World>>& pulse, Workspace& w, const Hit* hit) const noexcept {
   Outcome out;
   out.shot.index = i;
   if (!pulse) {
@@ -220,9 +269,9 @@ Outcome EchoSimulator<Footprint, Target, Detector, Transport>::operator()(
   }
   const TransportResult result = [&] {
     if constexpr (RotatesPerPulse<Footprint>)
-      return trace(turned(*pulse, i), i, constants, w);
+      return trace(turned(*pulse, i), i, constants, w, hit);
     else
-      return trace(*pulse, i, constants, w);
+      return trace(*pulse, i, constants, w, hit);
   }();
   out.energy = result.energy;
   out.spread = result.spread;
@@ -240,7 +289,7 @@ Outcome EchoSimulator<Footprint, Target, Detector, Transport>::operator()(
   bool all_inside = true;
   for (Echo& echo : detection.echoes) {
     echo.reflectance = echo.amplitude / w.white_target.power(constants.budget, echo.range);
-    if (constants.errs)
+    if (constants.errs) [[unlikely]]
       echo.range += errors.at(echo, normal({seed_, i, echo.number, Purpose::range_noise}), emitter.channel);
     all_inside &= input.gate.contains(echo.range);
   }

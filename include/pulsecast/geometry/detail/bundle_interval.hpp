@@ -3,8 +3,8 @@
 #ifndef PULSECAST_GEOMETRY_DETAIL_BUNDLE_INTERVAL_HPP
 #define PULSECAST_GEOMETRY_DETAIL_BUNDLE_INTERVAL_HPP
 
-#include <pulsecast/geometry/bundle.hpp>
 #include <pulsecast/geometry/detail/bounding_box.hpp>
+#include <pulsecast/geometry/detail/ray_sheaf.hpp>
 
 namespace PULSECAST_NAMESPACE {
 
@@ -34,7 +34,8 @@ class BundleInterval {
       const double o = rays.origin[k] - centre[k];
       // rounding to Real; a wall is at most three half extents from the origin of a grid
       const double extent = 0.5 * (bounds.max[k] - bounds.min[k]);
-      const double margin = slack + (4 * std::fabs(o) + 8 * extent) * epsilon;
+      const double reach = reach_of(rays, k),
+                   margin = reach + slack + (4 * (std::fabs(o) + reach) + 8 * extent) * epsilon;
       const Real from = static_cast<Real>(o - margin), to = static_cast<Real>(o + margin);
       if (low > 0)
         axes_[k] = {from, to, slowness(high, 1 - tolerance), slowness(low, 1 + tolerance), 1};
@@ -156,6 +157,13 @@ class BundleInterval {
       span.entry = range > span.entry ? range : span.entry;
     else
       span.exit = range < span.exit ? range : span.exit;
+  }
+
+  /// Distance to which rays may start from the origin of all, along an axis: of a sheaf [m].
+  template <class Rays>
+  static double reach_of([[maybe_unused]] const Rays& rays, [[maybe_unused]] int k) noexcept {
+    if constexpr (std::is_same_v<Rays, detail::RaySheaf>) return rays.origin_reach[k];
+    return 0;
   }
 
   Real near_;

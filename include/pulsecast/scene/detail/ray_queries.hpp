@@ -19,6 +19,10 @@ concept SurfacedBySingleRay = requires(const Shape& shape, const SingleRayPacket
   shape.surface(PrimitiveIndex{}, ray, std::size_t{});
 };
 
+/// Shape that needs no bundle for a ray's closest hit and its surface.
+template <class Shape>
+concept TakesSingleRays = Intersects<Shape, SingleRayPacket, ClosestHit> && SurfacedBySingleRay<Shape>;
+
 /// Offers the hits of a shape with a bundle or a single ray. A shape that takes neither single rays
 /// nor such hits is asked for the closest hit of a bundle.
 template <class Shape, class Rays, class Hits>
@@ -37,13 +41,27 @@ void offer_hits(const Shape& shape, const Rays& rays, Hits& hits) noexcept {
   }
 }
 
+/// Offers the hits of a shape with each ray of a sheaf, together if the shape takes sheaves.
 template <class Shape>
-[[nodiscard]] SurfaceInteraction surface_of(const Shape& shape, PrimitiveIndex primitive,
-                                            const SingleRayPacket& ray) noexcept {
-  if constexpr (SurfacedBySingleRay<Shape>)
-    return shape.surface(primitive, ray, 0);
+void offer_hits(const Shape& shape, const RaySheaf& rays, SheafHits& hits) noexcept {
+  if constexpr (Intersects<Shape, RaySheaf, SheafHits>) {
+    shape.closest(rays, hits);
+  } else {
+    for (std::size_t j = 0; j < rays.size; ++j) {
+      hits.of[j].part = hits.part;
+      offer_hits(shape, rays.rays[j], hits.of[j]);
+    }
+  }
+}
+
+template <class Shape>
+[[nodiscard, gnu::always_inline]] inline SurfaceInteraction surface_of(const Shape& shape, PrimitiveIndex primitive,
+                                                                       const auto& rays, std::size_t j) noexcept {
+  constexpr bool single = std::is_same_v<std::remove_cvref_t<decltype(rays)>, SingleRayPacket>;
+  if constexpr (!single || SurfacedBySingleRay<Shape>)
+    return shape.surface(primitive, rays, j);
   else
-    return shape.surface(primitive, bundle_of(ray, infinity), 0);
+    return shape.surface(primitive, bundle_of(rays, infinity), 0);
 }
 
 [[nodiscard]] inline RayHit ray_hit(double range, std::uint64_t id) noexcept {
@@ -93,7 +111,7 @@ template <class Part>
   SurfaceInteraction point;
   const auto look = [&](const auto& shape) noexcept {
     using Shape = std::remove_cvref_t<decltype(*shape)>;
-    point = surface_of(*shape, hit.primitive, local);
+    point = surface_of(*shape, hit.primitive, local, 0);
     point.front = !(dot(point.normal, local.toward) > 0);
     point.normal = placement.rotation * (point.front ? point.normal : -point.normal);
     if constexpr (MadeOfTriangles<Shape>)

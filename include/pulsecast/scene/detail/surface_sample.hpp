@@ -3,8 +3,7 @@
 #ifndef PULSECAST_SCENE_DETAIL_SURFACE_SAMPLE_HPP
 #define PULSECAST_SCENE_DETAIL_SURFACE_SAMPLE_HPP
 
-#include <pulsecast/geometry/triangle.hpp>
-#include <pulsecast/scene/part.hpp>
+#include <pulsecast/scene/detail/ray_queries.hpp>
 
 namespace PULSECAST_NAMESPACE::detail {
 
@@ -19,16 +18,16 @@ struct SurfaceSample {
 };
 
 /// Samples the surface of a primitive where ray j hits it. Inlined, to set what is read alone.
-template <class Part>
+template <class Part, class Rays>
 struct SurfaceSampler {
   const Part& part;
   PrimitiveIndex primitive;
-  const RayBundle& local;
+  const Rays& local;
   std::size_t j;
 
   template <class Shape>
   [[gnu::always_inline]] SurfaceSample operator()(const std::shared_ptr<const Shape>& shape) const noexcept {
-    const SurfaceInteraction surface = shape->surface(primitive, local, j);
+    const SurfaceInteraction surface = surface_of(*shape, primitive, local, j);
     SurfaceSample found{.normal = surface.normal,
                         .material = &(*part.materials)[surface.material_index],
                         .material_index = surface.material_index,
