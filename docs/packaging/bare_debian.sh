@@ -28,7 +28,7 @@ cp "$here/../../examples/embed.cpp" "$here/../../tests/examples/python/typed_sur
 within 'apt-get update -qq && apt-get install --yes -qq --no-install-recommends /opt/try/pulsecast.deb'
 
 step "program, man page, catalogue"
-within 'pulsecast --version; test -s /usr/share/man/man1/pulsecast.1*; pulsecast catalogue | grep -q riegl_vz400'
+within 'pulsecast --version; pulsecast-import --version; test -s /usr/share/man/man1/pulsecast.1*; pulsecast catalogue | grep -q riegl_vz400'
 
 step "a survey with the catalogue"
 cat > "$root/opt/try/floor.obj" <<'OBJ'

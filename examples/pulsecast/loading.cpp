@@ -12,7 +12,7 @@
 #include <pulsecast/helios/make_simulation.hpp>
 #include <pulsecast/helios/scene.hpp>
 
-#include "city_models.hpp"
+#include "foreign_meshes.hpp"
 #include "scene_store.hpp"
 #include "survey_inputs.hpp"
 

@@ -8,6 +8,8 @@
 #include <cstdlib>
 #include <iostream>
 #include <iterator>
+#include <map>
+#include <span>
 #include <string>
 #include <system_error>
 #include <utility>
@@ -131,7 +133,6 @@ class CommandLine {
     app_.get_formatter()->column_width(46);
     app_.set_version_flag(
         "--version", std::string("pulsecast ") + PULSECAST_VERSION + ", instructions: " QUOTED(PULSECAST_INSTRUCTIONS));
-    app_.option_defaults()->ignore_case();
     add_inputs();
     add_las();
     add_results();
@@ -145,6 +146,7 @@ class CommandLine {
   /// Reads the words after the name of the program. Empty if nothing remains to be done; then `status` is set.
   [[nodiscard]] std::optional<Options> read(std::vector<std::string> words, int& status) {
     take_command(words);
+    fold_case(words);
     std::string problem;
     try {
       app_.parse(std::vector<std::string>(words.rbegin(), words.rend()));
@@ -321,6 +323,28 @@ class CommandLine {
     // names after the end of options: CLI11 takes that as the end of a list, too, and what follows for options
     for (auto word = std::find(words.begin(), words.end(), "--"); word != words.end(); ++word)
       if (word->starts_with('-') && *word != "--") word->insert(0, "./");
+  }
+
+  /// Spells options as they are declared, however their letters are. CLI11 can ignore case, too, but compares each
+  /// option with all others for it, which takes as long as all else of a start.
+  void fold_case(std::vector<std::string>& words) const {
+    std::map<std::string, std::string> known;
+    for (const CLI::Option* option : app_.get_options())
+      for (const std::string& name : option->get_lnames()) known.emplace(text::lower("--" + name), "--" + name);
+    for (std::string& word : words) {
+      const std::size_t end = std::min(word.find('='), word.size());
+      if (const auto at = known.find(text::lower(word.substr(0, end))); at != known.end()) {
+        word.replace(0, end, at->second);
+        continue;
+      }
+      if (!word.starts_with('-') || word.starts_with("--")) continue;
+      for (char& letter : std::span(word).subspan(1)) {  // as in -qJ2
+        const CLI::Option* const option = app_.get_option_no_throw(std::string("-") + text::lower(letter));
+        if (option == nullptr) break;
+        letter = text::lower(letter);
+        if (option->get_items_expected_max() > 0) break;  // its value follows
+      }
+    }
   }
 
   /// Problem with words that are not options; empty if there is none.

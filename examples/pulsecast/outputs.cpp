@@ -17,10 +17,8 @@
 #include <pulsecast/io/text_files.hpp>
 #include <pulsecast/io/trajectory.hpp>
 #include <pulsecast/shape/hillshade.hpp>
-#ifdef PULSECAST_NPZ
-#include <pulsecast/io/npz.hpp>
-#endif
 
+#include "parts.hpp"
 #include "point_formats.hpp"
 
 namespace fs = std::filesystem;
@@ -200,9 +198,7 @@ struct LegFiles::Inside {
   std::vector<std::unique_ptr<PointFile>> points{};
   io::TrajectoryWriter trajectory;
   std::optional<io::WaveformTextWriter> waveforms{};
-#ifdef PULSECAST_NPZ
-  std::optional<io::WaveformNpzWriter> waveform_arrays{};
-#endif
+  std::unique_ptr<PointFile> waveform_arrays{};
   std::optional<io::PulseTextWriter> pulses{};
   std::optional<io::MissTextWriter> misses{};
   std::optional<io::MissPoints> miss_points{};
@@ -219,10 +215,8 @@ LegFiles::LegFiles(const fs::path& folder, const std::string& prefix, const Opti
   if (o.write_waveform && !point_format(o.format).waveform_arrays)
     inside_->waveforms.emplace(folder / (prefix + waveform_ending(o)),
                                io::TextFileSettings{start_time, o.waveform_bins});
-#ifdef PULSECAST_NPZ
   if (o.write_waveform && point_format(o.format).waveform_arrays)
-    inside_->waveform_arrays.emplace(folder / (prefix + waveform_ending(o)), start_time);
-#endif
+    inside_->waveform_arrays = part<ArraysPart>().waveforms(folder / (prefix + waveform_ending(o)), start_time);
   if (o.write_pulse) inside_->pulses.emplace(folder / (prefix + "_pulse.txt"), io::TextFileSettings{start_time});
   if (o.write_misses) inside_->misses.emplace(folder / (prefix + "_misses.txt"), io::TextFileSettings{start_time});
   if (o.misses_at) inside_->miss_points.emplace(io::MissSettings{.range = *o.misses_at});
@@ -247,9 +241,7 @@ void LegFiles::operator()(const EchoBatch& batch) {
     (*inside_->points[k])(part);
   }
   if (inside_->waveforms) (*inside_->waveforms)(batch);
-#ifdef PULSECAST_NPZ
   if (inside_->waveform_arrays) (*inside_->waveform_arrays)(batch);
-#endif
   if (inside_->pulses) (*inside_->pulses)(batch);
   if (inside_->misses) (*inside_->misses)(batch);
   if (inside_->map) (*inside_->map)(batch);
@@ -265,9 +257,7 @@ void LegFiles::add_trajectory(const helios::SurveyLeg& leg, Tick start, double i
 
 void LegFiles::close() {
   if (inside_->waveforms) inside_->waveforms->close();
-#ifdef PULSECAST_NPZ
   if (inside_->waveform_arrays) inside_->waveform_arrays->close();
-#endif
   if (inside_->pulses) inside_->pulses->close();
   if (inside_->misses) inside_->misses->close();
   if (inside_->map) inside_->map->close();

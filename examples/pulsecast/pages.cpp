@@ -7,7 +7,8 @@
 #include <optional>
 
 #include <pulsecast/page/page.hpp>
-#include <pulsecast/page/server.hpp>
+
+#include "parts.hpp"
 
 using namespace pulsecast;
 
@@ -16,7 +17,7 @@ struct Pages::Inside {
   bool file = false;
   page::PageSurvey survey{};
   std::optional<page::PageWriter> writer{};
-  std::optional<page::PageServer> server{};
+  std::unique_ptr<LivePage> server{};
 };
 
 Pages::Pages(const Options& options, const helios::SurveySettings& survey) : inside_(new Inside) {
@@ -26,7 +27,7 @@ Pages::Pages(const Options& options, const helios::SurveySettings& survey) : ins
   inside_->survey = {.name = survey.name,
                      .scanner = name(survey.scanner.name, survey.scanner.id),
                      .platform = name(survey.platform.name, survey.platform.id)};
-  if (options.live) inside_->server.emplace(inside_->survey, inside_->settings);
+  if (options.live) inside_->server = part<LivePart>().page(inside_->survey, inside_->settings);
 }
 Pages::~Pages() = default;
 

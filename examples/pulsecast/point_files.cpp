@@ -23,9 +23,6 @@
 #ifdef PULSECAST_PCD
 #include <pulsecast/io/pcd.hpp>
 #endif
-#ifdef PULSECAST_NPZ
-#include <pulsecast/io/npz.hpp>
-#endif
 #ifdef PULSECAST_ROS
 #include <pulsecast/io/mcap.hpp>
 #include <pulsecast/io/point_cloud2.hpp>
@@ -33,6 +30,7 @@
 #endif
 
 #include "outputs.hpp"
+#include "parts.hpp"
 
 namespace fs = std::filesystem;
 using namespace pulsecast;
@@ -142,10 +140,7 @@ std::unique_ptr<PointFile> point_file(const fs::path& path, const std::string& p
   points.start_time = start_time;
   if (o.format == "ply")
     return written<io::PlyWriter>(path, io::PlySettings{.layout = point_layout(o), .points = points});
-#ifdef PULSECAST_NPZ
-  if (o.format == "npz")
-    return written<io::NpzWriter>(path, io::NpzSettings{.layout = point_layout(o), .points = points});
-#endif
+  if (o.format == "npz") return part<ArraysPart>().points(path, point_layout(o), points);
 #ifdef PULSECAST_PCD
   points.origin = o.origin;
   if (o.format == "pcd")

@@ -8,7 +8,7 @@
 #include <pulsecast/base/text.hpp>
 #include <pulsecast/io/input_file.hpp>
 #if defined(PULSECAST_REFERENCE)
-#include <pulsecast/io/reference.hpp>
+#include "parts.hpp"
 #else
 #include <pulsecast/io/detail/las/reference.hpp>
 #include <pulsecast/io/detail/reference_reader.hpp>
@@ -17,6 +17,14 @@
 using namespace pulsecast;
 
 namespace {
+
+#if defined(PULSECAST_REFERENCE)
+/// Lets readers ask PROJ, as `io/reference.hpp` does.
+const bool is_database_set =
+    (io::detail::reference_database = [](const io::SpatialReference& codes, const std::string& name) {
+      return part<ReferencePart>().complete(codes, name);
+    }) != nullptr;
+#endif
 
 /// Text of a file on one line.
 std::string text_of(const std::filesystem::path& path) {
@@ -35,12 +43,12 @@ std::string text_of(const std::filesystem::path& path) {
 io::SpatialReference completed(const io::SpatialReference& given, const std::filesystem::path& wkt, Notes& /*notes*/) {
   io::SpatialReference all = given;
   if (!wkt.empty()) all.wkt = text_of(wkt);
-  return io::complete_reference(all, wkt.string());
+  return part<ReferencePart>().complete(all, wkt.string());
 }
 
 io::MapProjector projector_of(const Options& options) {
   if (options.project_to == 0) return {};
-  return io::map_projector(options.project_from, options.project_to);
+  return part<ReferencePart>().projector(options.project_from, options.project_to);
 }
 #else
 io::SpatialReference completed(const io::SpatialReference& given, const std::filesystem::path& wkt, Notes& notes) {

@@ -34,14 +34,19 @@ constexpr std::uintmax_t worth_keeping =
     std::uintmax_t{16} << 20;  ///< minimum size of the scene's files; smaller scenes build in about a second [byte]
 constexpr std::uintmax_t max_kept = std::uintmax_t{16} << 30;  ///< of all scenes except the newest [byte]
 
-/// Identifies this program: another build may make other scenes.
+/// Identifies this program and the one that it starts for foreign meshes: another build may make other scenes.
 std::string this_program() {
   std::error_code error;
   fs::path program = fs::read_symlink("/proc/self/exe", error);
   if (program.filename() == "pulsecast-mpi") program.replace_filename("pulsecast");  // same objects
-  const auto size = fs::file_size(program, error);
-  if (error) return {};
-  return std::to_string(size) + ' ' + std::to_string(fs::last_write_time(program, error).time_since_epoch().count());
+  std::string all;
+  for (const fs::path& one : {program, program.parent_path() / "pulsecast-import"}) {
+    const auto size = fs::file_size(one, error);
+    if (error) continue;
+    all +=
+        std::to_string(size) + ' ' + std::to_string(fs::last_write_time(one, error).time_since_epoch().count()) + ' ';
+  }
+  return all;
 }
 
 /// Name of a scene in the store. It does not depend on file contents, so that changes replace the scene.

@@ -10,7 +10,7 @@ execute_process(COMMAND ${DPKG_DEB} --contents ${package} OUTPUT_VARIABLE conten
 execute_process(COMMAND ${DPKG_DEB} --info ${package} OUTPUT_VARIABLE info COMMAND_ERROR_IS_FATAL ANY)
 set(files include/pulsecast/pulsecast.hpp include/pulsecast/io/las.hpp share/cmake/pulsecast/pulsecastConfig.cmake)
 if(EXISTS ${BUILD}/examples/pulsecast)
-  list(APPEND files bin/pulsecast share/man/man1/pulsecast.1 share/pulsecast/data/)
+  list(APPEND files bin/pulsecast-import bin/pulsecast share/man/man1/pulsecast.1 share/pulsecast/data/)
 endif()
 if(EXISTS ${BUILD}/include/pulsecast/page/detail/assets.hpp)
   list(APPEND files include/pulsecast/page/detail/assets.hpp)

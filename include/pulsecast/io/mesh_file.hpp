@@ -95,10 +95,10 @@ PULSECAST_INLINE MeshFile read_mesh_file(const std::filesystem::path& path, cons
     } else {
       InputFile begin(path, "a mesh file");
       const bool is_ply = detail::PlyFile::is_ply(begin);
-      const auto import = [&](const auto& opened) {
-        return is_ply ? detail::PlyMesh(path, settings).read() : detail::MeshImport(path, settings, opened).read();
-      };
-      const auto scene = settings.isolated ? detail::imported_apart(path, settings.limits, import) : import(nullptr);
+      const auto ply = [&](const auto&) { return detail::PlyMesh(path, settings).read(); };
+      const auto scene = !is_ply             ? detail::foreign_scene(path, settings)
+                         : settings.isolated ? detail::imported_apart(path, settings.limits, ply)
+                                             : ply(nullptr);
       file = detail::MeshFileMaker(path, scene, settings, workers).make();
     }
     detail::replace_materials(file, settings);

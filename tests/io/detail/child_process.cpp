@@ -137,6 +137,33 @@ TEST_CASE("a child that hangs is ended") {
                  "more than 0.05 s"));
 }
 
+TEST_CASE("a program that takes no request is an error, and one that hangs is ended") {
+  const auto error_by = [](const char* program, double time = 20) {
+    return support::file_error(
+        [&] { (void)ChildProcess::result_of<int>(program, "some.file", {.time = time}, std::string("a request")); });
+  };
+  for (const char* program : {"/bin/true", "/bin/false", "/nowhere/program", "/"}) {
+    const FileError error = error_by(program);
+    CHECK(error.path() == "some.file");
+    CHECK(contains(error.problem(), std::string("as ") + program + " does not start"));
+  }
+  CHECK(contains(error_by("/bin/sleep", 0.05).problem(), "more than 0.05 s"));  // for as long as the file's number
+}
+
+TEST_CASE("a file without a request is not served") {
+  bool served = false;
+  std::FILE* const file = std::tmpfile();
+  REQUIRE(file != nullptr);
+  for (const char* content : {"", "short", "no request, though it ends as one: pc asks."}) {
+    std::fputs(content, file);
+    std::fflush(file);
+    ChildProcess::serve<std::string>(::fileno(file), [&](const std::string&) { return served = true; });
+  }
+  ChildProcess::serve<std::string>(-1, [&](const std::string&) { return served = true; });
+  CHECK_FALSE(served);
+  std::fclose(file);
+}
+
 #if !defined(PULSECAST_TEST_SANITIZED)  // whose own memory fails otherwise
 TEST_CASE("a child that takes too much memory is ended, unless it is allowed") {
   const auto take = [](std::size_t bytes) {

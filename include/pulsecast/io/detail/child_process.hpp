@@ -65,8 +65,8 @@ struct ChildLimits {
   double time = 60;     ///< of computation, and by the clock [s]
 };
 
-/// Child process that does one piece of work: a fork, as a library has no program to start. The
-/// child has one thread and no network. It must not use locks that other threads may hold; those of
+/// Child process that does one piece of work: a fork, or a program that calls `serve`. The child has
+/// no network. A fork has one thread, and must not use locks that other threads may hold; those of
 /// memory and of streams are none of these.
 class ChildProcess {
  public:
@@ -77,9 +77,45 @@ class ChildProcess {
   [[nodiscard]] static auto result(const std::string& path, const ChildLimits& limits, const Make& make) {
     decltype(make()) made{};
     const File file(path);
-    const int status = run(path, file.number, limits, [&](ArchiveWriter& to) { to(make()); });
+    const int status =
+        run(path, limits, [&] { be_child(file.number, limits, [&](ArchiveWriter& to) { to(make()); }); });
     take(path, file.number, status, limits, [&](ArchiveReader& from) { from(made); });
     return made;
+  }
+
+  /// Result of a program of this build, of the type that it makes of `request`; errors are those of `result`. The
+  /// program is started with the number of a file, which has the request, and inherits no other but 0, 1 and 2.
+  template <class Made>
+  [[nodiscard]] static Made result_of(const std::filesystem::path& program, const std::string& path,
+                                      const ChildLimits& limits, const auto& request) {
+    Made made{};
+    const File file(path);
+    write(file.number, requested, [&](ArchiveWriter& to) { to(limits, request); });
+    const std::string number = std::to_string(file.number);
+    const int status = run(path, limits, [&] { start(program, file.number, number); });
+    if (last_word(file.number) == requested && !(WIFSIGNALED(status) && WTERMSIG(status) == SIGXCPU))
+      detail::fail(path, "cannot be imported, as ", program.string(),
+                   " does not start: expected that program, of this build, and its libraries");
+    take(path, file.number, status, limits, [&](ArchiveReader& from) { from(made); });
+    return made;
+  }
+
+  /// In such a program: takes the request from the file of that number, hands the result of `make` over, and exits.
+  /// Returns if there is no request, or one of another build.
+  template <class Request>
+  static void serve(int file, const auto& make) {
+    ChildLimits limits;
+    Request request{};
+    try {
+      if (last_word(file) != requested) return;
+      ArchiveReader from = content(file);
+      from(limits, request);
+      from.require_end();
+    } catch (const ArchiveError&) {
+      return;
+    }
+    if (::ftruncate(file, 0) != 0) return;
+    be_child(file, limits, [&](ArchiveWriter& to) { to(make(request)); });
   }
 
   /// In a child: raises the limit of memory by some bytes.
@@ -112,14 +148,26 @@ class ChildProcess {
     ~File() { ::close(number); }
   };
 
-  static constexpr Word done{'p', 'c', ' ', 'd', 'o', 'n', 'e', '.'}, failed{'p', 'c', ' ', 'f', 'a', 'i', 'l', '.'};
+  static constexpr Word requested{'p', 'c', ' ', 'a', 's', 'k', 's', '.'}, done{'p', 'c', ' ', 'd', 'o', 'n', 'e', '.'},
+      failed{'p', 'c', ' ', 'f', 'a', 'i', 'l', '.'};
 
-  [[nodiscard]] static int run(const std::string& path, int file, const ChildLimits& limits, const Work& work) {
+  [[nodiscard]] static int run(const std::string& path, const ChildLimits& limits, const auto& in_child) {
     std::fflush(nullptr);
     const pid_t child = ::fork();
     if (child < 0) detail::fail(path, "no child process can be started for its import: ", system_error());
-    if (child == 0) be_child(file, limits, work);
+    if (child == 0) in_child();  // which does not return
     return wait(child, limits.time);
+  }
+
+  [[noreturn]] static void start(const std::filesystem::path& program, int file, const std::string& number) noexcept {
+#if defined(__linux__)
+    ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+    ::syscall(SYS_close_range, 3, file - 1, 0);
+    ::syscall(SYS_close_range, file + 1, ~0U, 0);
+#endif
+    ::fcntl(file, F_SETFD, 0);
+    ::execl(program.c_str(), program.c_str(), number.c_str(), nullptr);
+    ::_exit(127);
   }
 
   [[noreturn]] static void be_child(int file, const ChildLimits& limits, const Work& work) noexcept {
@@ -201,6 +249,27 @@ class ChildProcess {
     }
   }
 
+  /// The last bytes of a file, or zeros.
+  [[nodiscard]] static Word last_word(int file) {
+    Word word{};
+    struct stat size {};
+    if (::fstat(file, &size) == 0 && size.st_size >= static_cast<off_t>(word.size()) &&
+        ::pread(file, word.data(), word.size(), size.st_size - static_cast<off_t>(word.size())) < 0)
+      word = {};
+    return word;
+  }
+
+  /// All before its last word, in a mapping.
+  [[nodiscard]] static ArchiveReader content(int file) {
+    struct stat size {};
+    ::fstat(file, &size);
+    const auto bytes = static_cast<std::size_t>(size.st_size);
+    void* const memory = ::mmap(nullptr, bytes, PROT_READ, MAP_PRIVATE, file, 0);
+    if (memory == MAP_FAILED) throw std::bad_alloc();
+    const std::shared_ptr<void> owner(memory, [bytes](void* at) { ::munmap(at, bytes); });
+    return {{static_cast<const std::byte*>(memory), bytes - done.size()}, owner};
+  }
+
   static void take(const std::string& path, int file, int status, const ChildLimits& limits,
                    const std::function<void(ArchiveReader&)>& by) {
     const auto fail = [&](const auto&... problem) { detail::fail(path, "its import ", problem...); };
@@ -212,29 +281,20 @@ class ChildProcess {
     if (signal != 0) fail("ended by signal ", signal, ": the file is damaged");
     if (WIFEXITED(status) && WEXITSTATUS(status) == out_of_memory)
       fail("took more memory than is allowed", consequence);
-    struct stat size {};
-    const std::size_t word = done.size();
-    if (::fstat(file, &size) != 0 || size.st_size < static_cast<off_t>(word))
-      fail("ended without a result: the file is damaged");
-    const auto bytes = static_cast<std::size_t>(size.st_size);
-    void* const memory = ::mmap(nullptr, bytes, PROT_READ, MAP_PRIVATE, file, 0);
-    if (memory == MAP_FAILED) throw std::bad_alloc();
-    const std::shared_ptr<void> owner(memory, [bytes](void* at) { ::munmap(at, bytes); });
-    const std::span<const std::byte> all(static_cast<const std::byte*>(memory), bytes);
-    const auto ends_with = [&](const Word& end) { return std::memcmp(&all[bytes - word], end.data(), word) == 0; };
-    if (!ends_with(done) && !ends_with(failed)) fail("ended without a result: the file is damaged");
+    const Word end = last_word(file);
+    if (end != done && end != failed) fail("ended without a result: the file is damaged");
     constexpr const char* inconsistent = "in a child process gave an inconsistent result";
     std::string of, place, problem;
     try {
-      ArchiveReader from(all.first(bytes - word), owner);
-      ends_with(done) ? by(from) : from(of, place, problem);
+      ArchiveReader from = content(file);
+      end == done ? by(from) : from(of, place, problem);
       from.require_end();
     } catch (const ArchiveError&) {
       fail(inconsistent);
     } catch (const SettingError&) {
       fail(inconsistent);
     }
-    if (ends_with(failed)) throw FileError(of.empty() ? path : of, place, problem);
+    if (end == failed) throw FileError(of.empty() ? path : of, place, problem);
   }
 };
 

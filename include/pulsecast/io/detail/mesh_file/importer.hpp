@@ -3,6 +3,10 @@
 #ifndef PULSECAST_IO_DETAIL_MESH_FILE_IMPORTER_HPP
 #define PULSECAST_IO_DETAIL_MESH_FILE_IMPORTER_HPP
 
+#include <pulsecast/base/compiled.hpp>
+#include <pulsecast/io/detail/mesh_file/raw_scene.hpp>
+
+#if PULSECAST_DEFINES(IO_MESH_IMPORT) && !defined(PULSECAST_IMPORTS_APART)
 #include <assimp/DefaultIOSystem.h>
 #include <assimp/MemoryIOWrapper.h>
 #include <assimp/commonMetaData.h>
@@ -313,6 +317,13 @@ class MeshImport {
   std::uint64_t left_out_ = 0, posed_ = 0, crossings_ = 0;
 };
 
+PULSECAST_INLINE RawScene foreign_scene(const std::filesystem::path& path, const MeshFileSettings& settings) {
+  const auto import = [&](const auto& opened) { return MeshImport(path, settings, opened).read(); };
+  return settings.isolated ? imported_apart(path, settings.limits, import) : import(nullptr);
+}
+
 }  // namespace PULSECAST_NAMESPACE::io::detail
+
+#endif
 
 #endif

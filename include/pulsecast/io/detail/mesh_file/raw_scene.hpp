@@ -122,21 +122,28 @@ struct RawScene {
   return message;
 }
 
+/// Limits of the import of a file.
+[[nodiscard]] inline ChildLimits child_limits(const std::filesystem::path& path, const ImportLimits& limits) {
+  std::error_code ignored;
+  const auto size = static_cast<double>(std::filesystem::file_size(path, ignored));
+  const double bytes = ignored ? 0 : size;
+  return {.memory = limits.memory + limits.memory_per_byte * bytes, .time = limits.time + limits.time_per_byte * bytes};
+}
+
 /// Result of an import in a child process: `import` takes a function to call with the size of each
 /// further file [byte].
 template <class Import>
 [[nodiscard]] RawScene imported_apart(const std::filesystem::path& path, const ImportLimits& limits,
                                       const Import& import) {
-  std::error_code ignored;
-  const auto size = static_cast<double>(std::filesystem::file_size(path, ignored));
-  const double bytes = ignored ? 0 : size;
-  const ChildLimits of_child{.memory = limits.memory + limits.memory_per_byte * bytes,
-                             .time = limits.time + limits.time_per_byte * bytes};
   const auto opened = [&](std::uint64_t more) {
     ChildProcess::allow(limits.memory_per_byte * static_cast<double>(more));
   };
-  return ChildProcess::result(path.string(), of_child, [&] { return import(opened); });
+  return ChildProcess::result(path.string(), child_limits(path, limits), [&] { return import(opened); });
 }
+
+/// Scene of a file by assimp, in a child process if `settings.isolated`. A program that defines it itself is compiled
+/// with PULSECAST_IMPORTS_APART, and needs no assimp.
+[[nodiscard]] RawScene foreign_scene(const std::filesystem::path& path, const MeshFileSettings& settings);
 
 /// True for a path that does not leave a folder by its words; links are followed.
 [[nodiscard]] inline bool is_inside(const std::filesystem::path& folder, const std::filesystem::path& file) {

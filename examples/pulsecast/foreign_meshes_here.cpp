@@ -1,15 +1,27 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#include "city_models.hpp"
 
-#if defined(PULSECAST_CITYGML)
+// Meshes of foreign formats by the libraries that this process has loaded: for the Python module.
+
+#include "foreign_meshes.hpp"
+
 #include <filesystem>
 #include <utility>
 
+#include <pulsecast/io/mesh_file.hpp>
+#if defined(PULSECAST_CITYGML)
 #include <pulsecast/io/citygml.hpp>
+#endif
 
 using namespace pulsecast;
 
+namespace {
+
+[[gnu::used]] const auto of_mesh_files = &io::detail::foreign_scene;  // without pulsecast::compiled: is compiled here
+
+}  // namespace
+
+#if defined(PULSECAST_CITYGML)
 helios::CityReader city_models() {
   return [](const std::filesystem::path& path, const io::MeshFileSettings& settings, unsigned threads) {
     return io::read_citygml(path,
@@ -22,5 +34,5 @@ helios::CityReader city_models() {
   };
 }
 #else
-pulsecast::helios::CityReader city_models() { return {}; }
+helios::CityReader city_models() { return {}; }
 #endif
