@@ -147,19 +147,20 @@ class TriangleMesh {
     return {corners[triangle[0]], corners[triangle[1]], corners[triangle[2]]};
   }
 
+  struct NoLineTest {
+    NoLineTest(const auto&, const Box&) noexcept {}
+  };
+
   /// Leaf test and prefetch of the index.
   template <class Rays, class Hits>
   struct Test {
+    static constexpr bool alone = Rays::capacity == 1;
     const TriangleMesh& mesh;
     const Rays& rays;
     Hits& nearest;
-    LineTest line{};  ///< of a single ray
+    [[no_unique_address]] std::conditional_t<alone, LineTest, NoLineTest> line{rays, mesh.bounds()};
 
-    Test(const TriangleMesh& of, const Rays& by, Hits& found) noexcept : mesh(of), rays(by), nearest(found) {
-      if constexpr (alone) line = LineTest(by, of.bounds());
-    }
-
-    static constexpr bool alone = Rays::capacity == 1;
+    Test(const TriangleMesh& of, const Rays& by, Hits& found) noexcept : mesh(of), rays(by), nearest(found) {}
 
     void operator()(std::span<const PrimitiveIndex> primitives) const noexcept {
       const std::size_t place = place_of(primitives), room = alone ? simd::lane_count : primitives.size();
@@ -179,7 +180,8 @@ class TriangleMesh {
                                      const auto& solid) const noexcept {
       if constexpr (alone) {
         const TrianglePacket packet(primitives.size(), triangle_of);
-        if (line.may_meet(packet)) intersect(packet, primitives, rays, nearest, solid);
+        const auto [possible, certain] = line.meet(packet);
+        if (possible != 0) intersect(packet, primitives, rays, nearest, solid, possible == certain ? certain : 0);
       } else {
         intersect(primitives, triangle_of, rays, nearest, solid);
       }
