@@ -234,7 +234,7 @@ class Bvh {
   }
 
   template <class Test>
-  void prefetch_entry(const StackEntry& next, const Test& test) const noexcept {
+  [[gnu::always_inline]] void prefetch_entry(const StackEntry& next, const Test& test) const noexcept {
     static_assert(detail::members_checked<Test, tag::PrefetchesPrimitives>);
     if (next.size == 0)
       prefetch(&nodes_[next.first]);

@@ -84,9 +84,9 @@ struct TrianglePacket {
 /// than the aspect. A ray within 1e-12 rad of the plane misses, as does every ray if two edges are
 /// parallel to within 8 roundings (no area). Hits of ray j count with `solid(j, primitive)`,
 /// outside the holes of a mask. A single ray is known to be on one side of the planes of the
-/// triangles in the mask `certain`, if that is not 0, and to pass the others. Never inlined: every accelerator gets the same bits.
-/// Source: volume test of Amanatides & Choi 1997 in the edge-symmetric form of Shevtsov, Soupikov &
-/// Kapustin 2007; interval inside the box: Kay & Kajiya 1986; bounds: Higham 2002, ch. 3.
+/// triangles in the mask `certain`, if that is not 0, and to pass the others. Never inlined: every accelerator gets the
+/// same bits. Source: volume test of Amanatides & Choi 1997 in the edge-symmetric form of Shevtsov, Soupikov & Kapustin
+/// 2007; interval inside the box: Kay & Kajiya 1986; bounds: Higham 2002, ch. 3.
 template <class Rays, class Hits, class Solid = detail::SolidEverywhere>
 [[gnu::noinline]] void intersect(const TrianglePacket& triangles, std::span<const PrimitiveIndex> primitives,
                                  const Rays& rays, Hits& nearest, [[maybe_unused]] const Solid& solid = {},

@@ -197,7 +197,7 @@ class TriangleMesh {
         primitives = primitives.subspan(count);
       }
     }
-    void prefetch(std::span<const PrimitiveIndex> primitives) const noexcept {
+    [[gnu::always_inline]] void prefetch(std::span<const PrimitiveIndex> primitives) const noexcept {
       pulsecast::prefetch(mesh.triangles_.data() + place_of(primitives));
     }
 

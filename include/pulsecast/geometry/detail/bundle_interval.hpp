@@ -180,7 +180,7 @@ class RayInterval {
     const Axes both = o + direction;
     const bool is_valid = std::isfinite(both[0] + both[1] + both[2]);  // infinity and NaN miss
     maps_.near = is_valid ? static_cast<Real>(ray.near * (1 - tolerance)) + Real{0}
-                     : std::numeric_limits<Real>::infinity();  // no -0
+                          : std::numeric_limits<Real>::infinity();  // no -0
   }
 
   [[nodiscard]] Real limit(const auto&, const auto& nearest) const noexcept {
@@ -190,12 +190,14 @@ class RayInterval {
   /// Bit mask of the boxes that the ray may be inside of at a range up to `limit`, and their keys.
   // always inlined into the traversal, which saves 20 instructions a node
   [[nodiscard, gnu::always_inline]] unsigned inside(const Box8<Real>& boxes, Real limit, Keys& keys) const noexcept {
+    const Maps* maps = &maps_;
+    asm("" : "+r"(maps));  // numbers for all lanes are loaded here: there are too few registers to keep them
     unsigned met = 0;
     for (std::size_t first = 0; first < 8; first += lanes) {
-      Packet entry = maps_.near - Packet{}, exit = limit - Packet{};
-      clip(0, boxes, first, entry, exit);
-      clip(1, boxes, first, entry, exit);
-      clip(2, boxes, first, entry, exit);
+      Packet entry = maps->near - Packet{}, exit = limit - Packet{};
+      clip(0, boxes, first, *maps, entry, exit);
+      clip(1, boxes, first, *maps, entry, exit);
+      clip(2, boxes, first, *maps, entry, exit);
       simd::store(KeyPacket(entry) & ~Key{7}, keys[first]);
       met |= simd::bits(entry <= exit * static_cast<Real>(1 + 3 * tolerance)) << first;
     }
@@ -215,26 +217,27 @@ class RayInterval {
   static constexpr double min_speed = 1e-18;
   static constexpr std::size_t wall_bytes = sizeof(Box8<Real>::min[0]);
 
-  /// Cuts the intervals of consecutive boxes down to what lies between their walls on axis k. A
-  /// wall's position errs by two roundings of the distance to the origin, plus two of half the
-  /// bounds; the range, by two. `per` is too small, so that the entry is not late.
-  [[gnu::always_inline]] void clip(std::size_t k, const Box8<Real>& boxes, std::size_t first, Packet& entry,
-                                   Packet& exit) const noexcept {
-    const char* const walls = reinterpret_cast<const char*>(&boxes.min[0][first]);
-    const auto range_of = [&](std::size_t byte, std::size_t side) noexcept -> Packet {
-      return simd::load<Packet>(walls[byte]) * maps_.per[k] + maps_.start[side][k];
-    };
-    // NaN fails every comparison
-    entry = simd::max(range_of(maps_.entry_wall[k], 0), entry);
-    exit = simd::min(range_of(3 * wall_bytes + 2 * k * wall_bytes - maps_.entry_wall[k], 1), exit);
-  }
-
   /// Linear maps from a wall's coordinate on each axis to range, with margins: entry, exit.
   struct Maps {
     alignas(4 * sizeof(Real)) Real per[4], start[2][4];
     Real near;
     std::size_t entry_wall[3];  ///< byte of the walls where boxes are entered
   };
+
+  /// Cuts the intervals of consecutive boxes down to what lies between their walls on axis k. A
+  /// wall's position errs by two roundings of the distance to the origin, plus two of half the
+  /// bounds; the range, by two. `per` is too small, so that the entry is not late.
+  [[gnu::always_inline]] void clip(std::size_t k, const Box8<Real>& boxes, std::size_t first, const Maps& maps,
+                                   Packet& entry, Packet& exit) const noexcept {
+    const char* const walls = reinterpret_cast<const char*>(&boxes.min[0][first]);
+    const auto range_of = [&](std::size_t byte, std::size_t side) noexcept -> Packet {
+      return simd::load<Packet>(walls[byte]) * maps.per[k] + maps.start[side][k];
+    };
+    // NaN fails every comparison
+    entry = simd::max(range_of(maps.entry_wall[k], 0), entry);
+    exit = simd::min(range_of(3 * wall_bytes + 2 * k * wall_bytes - maps.entry_wall[k], 1), exit);
+  }
+
   Maps maps_;
 };
 

@@ -61,7 +61,8 @@ class LineTest {
 
   const SingleRayPacket& ray_;
   const Box& bounds_;
-  mutable double doubt_ = 0;  ///< volume below which a side is in doubt [m^2 times that of directions]; 0 before the first use
+  mutable double doubt_ =
+      0;  ///< volume below which a side is in doubt [m^2 times that of directions]; 0 before the first use
 };
 
 }  // namespace PULSECAST_NAMESPACE
