@@ -102,8 +102,8 @@ TEST_CASE_TEMPLATE("an archive whose nodes are no tree of 64 levels at most, or 
   };
   const auto chain = [](auto& nodes) {
     for (std::size_t i = 0; i + 1 < nodes.size(); ++i) {
-      nodes[i].kinds[0] = 0;
-      nodes[i].children = static_cast<std::uint32_t>(i + 1);
+      nodes[i].size[0] = 0;
+      nodes[i].first[0] = static_cast<std::uint32_t>(i + 1);
     }
   };
   CHECK(is_sound(1, chain));
@@ -112,15 +112,17 @@ TEST_CASE_TEMPLATE("an archive whose nodes are no tree of 64 levels at most, or 
   CHECK_FALSE(is_sound(2, [](auto&) {}));  // the second node has no parent
   CHECK_FALSE(is_sound(2, [&](auto& nodes) {
     chain(nodes);
-    nodes[0].kinds[1] = 0;  // the second node twice
+    nodes[0].size[1] = 0;  // the second node twice
+    nodes[0].first[1] = 1;
   }));
   for (std::size_t count = 1; count < 64; ++count)
     CHECK_FALSE(is_sound(count, [&](auto& nodes) {
       chain(nodes);
-      nodes.back().kinds[0] = 0;  // a node that is missing
-      nodes.back().children = static_cast<std::uint32_t>(count);
+      nodes.back().size[0] = 0;  // a node that is missing
+      nodes.back().first[0] = static_cast<std::uint32_t>(count);
     }));
-  CHECK_FALSE(is_sound(1, [](auto& nodes) { ++nodes[0].primitives; }));
+  CHECK_FALSE(is_sound(1, [](auto& nodes) { nodes[0].first[0] = 3; }));
+  CHECK_FALSE(is_sound(1, [](auto& nodes) { nodes[0].used = 5; }));
 }
 
 TEST_CASE_TEMPLATE("a cone that misses a Bvh comes near none of its boxes, and one between distant boxes misses it",

@@ -334,7 +334,7 @@ template <Accelerator A, class Change>
 [[nodiscard]] A with_nodes(A tree, std::size_t count, const Change& change) {
   const auto replace = [&]<class Member>(Member& member) {
     if constexpr (
-        requires { member[0].first(0); } || requires { member[0].first(); }) {
+        requires { member[0].first[0]; } || requires { member[0].first(); }) {
       std::vector<typename Member::value_type> nodes(count, member[0]);
       change(nodes);
       member = Member(std::move(nodes));

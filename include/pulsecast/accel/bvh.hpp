@@ -41,11 +41,11 @@ class Bvh {
     if (!depths.empty()) depths[0] = 1;
     for (std::size_t i = 0; i < nodes_.size(); ++i) {
       const Node& node = nodes_[i];
-      if (depths[i] == 0 || depths[i] > detail::max_depth || node.boxes.count > places) return false;
-      for (std::size_t place = 0; place < node.boxes.count; ++place) {
-        const std::size_t first = node.first(place);
-        if (node.size(place) > 0) {
-          if (first > primitives_.size() || node.size(place) > primitives_.size() - first) return false;
+      if (depths[i] == 0 || depths[i] > detail::max_depth || (node.used & (node.used + 1U)) != 0) return false;
+      for (std::size_t place = 0; place < node.count(); ++place) {
+        const std::size_t first = node.first[place];
+        if (node.size[place] > 0) {
+          if (first > primitives_.size() || node.size[place] > primitives_.size() - first) return false;
         } else {
           if (first <= i || first >= nodes_.size() || depths[first] != 0) return false;
           depths[first] = static_cast<std::uint8_t>(depths[i] + 1);
@@ -67,7 +67,9 @@ class Bvh {
   template <class Rays>
   void closest(const Rays& rays, const detail::LeafTest auto& test, auto& nearest) const noexcept {
     if (nodes_.empty()) return;
-    if constexpr (Rays::capacity == 1)
+    if constexpr (detail::EndsEarly<std::remove_reference_t<decltype(nearest)>>)
+      descend_to_any(rays, test, nearest);
+    else if constexpr (Rays::capacity == 1)
       descend_alone(rays, test, nearest);
     else
       descend(BundleInterval<Real>(rays, bounds_, centre_), rays, test, nearest);
@@ -86,11 +88,11 @@ class Bvh {
       if (opened == max_opened) return false;
       const Node& node = nodes_[waiting[--count]];
       std::array<Real, places> entries;
-      for (unsigned met = interval.inside(node.boxes, std::numeric_limits<Real>::max(), entries); met != 0;
+      for (unsigned met = interval.inside(node.boxes, std::numeric_limits<Real>::max(), entries) & node.used; met != 0;
            met &= met - 1) {
         const auto place = static_cast<std::size_t>(std::countr_zero(met));
-        if (node.size(place) > 0) return false;
-        waiting[count++] = node.first(place);
+        if (node.size[place] > 0) return false;
+        waiting[count++] = node.first[place];
       }
     }
     return true;
@@ -102,17 +104,14 @@ class Bvh {
   static constexpr std::size_t places = BinaryTree::places;
 
   struct alignas(64) Node {
-    QuantizedBox8<Real> boxes;
-    std::uint32_t children = 0;       ///< index of the first child node; the others follow it
-    std::uint32_t primitives = 0;     ///< index of the first leaf primitive; the others follow it
-    std::uint8_t kinds[places] = {};  ///< by child: leaf size in three bits, 0 for a node; offset
+    Box8<Real> boxes;
+    std::uint32_t first[places] = {};  ///< by child: first primitive of a leaf, or index of a node
+    std::uint8_t size[places] = {};    ///< by child: primitives of a leaf, 0 for a node
+    std::uint8_t used = 0;             ///< bit mask of the places with a child, the first ones
 
-    [[nodiscard]] std::uint32_t size(std::size_t place) const noexcept { return kinds[place] & 7U; }
-    [[nodiscard]] std::uint32_t first(std::size_t place) const noexcept {
-      return (size(place) > 0 ? primitives : children) + (kinds[place] >> 3U);
-    }
+    [[nodiscard]] std::size_t count() const noexcept { return static_cast<std::size_t>(std::popcount(used)); }
   };
-  static_assert(sizeof(Node) == (sizeof(Real) == 4 ? 128 : 192));
+  static_assert(sizeof(Node) == (sizeof(Real) == 4 ? 256 : 448));
 
   struct StackEntry {
     Real entry;
@@ -127,11 +126,11 @@ class Bvh {
     const Node* node = nodes_.data();
     for (;;) {
       std::array<Real, places> entries;
-      unsigned met = interval.inside(node->boxes, limit, entries);
+      unsigned met = interval.inside(node->boxes, limit, entries) & node->used;
       const auto take_first = [&]() noexcept -> StackEntry {
         const auto place = static_cast<std::size_t>(std::countr_zero(met));
         met &= met - 1;
-        return {entries[place], node->first(place), node->size(place)};
+        return {entries[place], node->first[place], node->size[place]};
       };
       StackEntry next{0, 0, nothing};
       if (met != 0) {  // nearest child next; the others on the stack, nearest on top
@@ -177,11 +176,11 @@ class Bvh {
     Real limit = interval.limit(rays, nearest);
     for (;;) {
       typename Interval::Keys keys;
-      unsigned met = interval.inside(node->boxes, limit, keys);
+      unsigned met = interval.inside(node->boxes, limit, keys) & node->used;
       const auto take_first = [&]() noexcept -> Child {
         const auto place = static_cast<std::size_t>(std::countr_zero(met));
         met &= met - 1;
-        return {keys[place] | static_cast<int>(node->size(place)), node->first(place)};
+        return {keys[place] | static_cast<int>(node->size[place]), node->first[place]};
       };
       Child next{0, 0};
       bool found = met != 0;
@@ -213,8 +212,31 @@ class Bvh {
     }
   }
 
+  /// Of a single ray that ends at any hit: the leaves of a node first, its nodes in any order.
+  void descend_to_any(const auto& rays, const auto& test, auto& nearest) const noexcept {
+    const RayInterval<Real> interval(rays, bounds_, centre_);
+    const Real limit = interval.limit(rays, nearest);
+    std::array<std::uint32_t, (places - 1) * detail::max_depth + 1> waiting;
+    std::size_t count = 1;
+    waiting[0] = 0;
+    do {
+      const Node& node = nodes_[waiting[--count]];
+      typename RayInterval<Real>::Keys keys;
+      for (unsigned met = interval.inside(node.boxes, limit, keys) & node.used; met != 0; met &= met - 1) {
+        const auto place = static_cast<std::size_t>(std::countr_zero(met));
+        const std::uint32_t first = node.first[place];
+        if (node.size[place] == 0) {
+          waiting[count++] = first;
+        } else {
+          test(std::span<const PrimitiveIndex>(primitives_.data() + first, node.size[place]));
+          if (nearest.done()) return;
+        }
+      }
+    } while (count > 0);
+  }
+
   template <class Test>
-  void prefetch_entry(const StackEntry& next, const Test& test) const noexcept {
+  [[gnu::always_inline]] void prefetch_entry(const StackEntry& next, const Test& test) const noexcept {
     static_assert(detail::members_checked<Test, tag::PrefetchesPrimitives>);
     if (next.size == 0)
       prefetch(&nodes_[next.first]);
@@ -267,7 +289,8 @@ class Bvh {
                      const Subtree& own = subtrees[i];
                      for (std::size_t k = 0; k < own.nodes.size(); ++k) {
                        Node& node = all[k == 0 ? below[i].node : own.first_node + k - 1] = own.nodes[k];
-                       node.children += static_cast<std::uint32_t>(own.first_node - 1);
+                       for (std::size_t place = 0; place < node.count(); ++place)
+                         if (node.size[place] == 0) node.first[place] += static_cast<std::uint32_t>(own.first_node - 1);
                      }
                    });
     nodes_ = all;
@@ -287,26 +310,23 @@ class Bvh {
     typename BinaryTree::Children children;
     binary.gather(open.range, places, children);
     Node node;
-    node.children = static_cast<std::uint32_t>(nodes.size());
-    node.primitives = static_cast<std::uint32_t>(next);
-    node.boxes.begin(binary.box(open.range));
-    std::uint32_t inner = 0;
+    node.used = static_cast<std::uint8_t>((1U << children.count) - 1);
+    std::size_t inner = nodes.size();
     for (std::size_t place = 0; place < children.count; ++place) {
       const auto& child = children.ranges[place];
-      node.boxes.add(binary.box(child));
-      if (binary.leaf(child)) {
-        node.kinds[place] = static_cast<std::uint8_t>((next - node.primitives) << 3U | child.size());
+      const bool leaf = binary.leaf(child);
+      node.boxes.put(place, binary.box(child));
+      node.size[place] = static_cast<std::uint8_t>(leaf ? child.size() : 0);
+      node.first[place] = static_cast<std::uint32_t>(leaf ? next : inner++);
+      if (leaf)
         for (std::uint32_t i = child.begin; i < child.end; ++i) primitives[next++] = binary.primitives()[i].primitive;
-      } else {
-        node.kinds[place] = static_cast<std::uint8_t>(inner++ << 3U);
-      }
     }
     nodes[open.node] = node;
-    nodes.resize(nodes.size() + inner);
+    nodes.resize(inner);
     std::size_t depth = open.depth;
     for (std::size_t place = children.count; place-- > 0;) {
-      if (node.size(place) > 0) continue;
-      const Open child{children.ranges[place], node.first(place), open.depth + 1};
+      if (node.size[place] > 0) continue;
+      const Open child{children.ranges[place], node.first[place], open.depth + 1};
       depth = std::max(depth, make_nodes(binary, child, nodes, primitives, next, grain, below));
     }
     return depth;

@@ -21,13 +21,8 @@ class BvhRefit {
     double sum = 0, root = 0;
     for (const Node& node : tree.nodes_) {
       GrowingBox around;
-      for (std::size_t place = 0; place < node.boxes.count; ++place) {
-        BoundingBox<Real> box;
-        for (std::size_t k = 0; k < 3; ++k) {
-          const auto& [low, high] = node.boxes.walls[k];
-          box.min[k] = node.boxes.origin[k] + static_cast<Real>(low[place]) * node.boxes.step(k);
-          box.max[k] = node.boxes.origin[k] + static_cast<Real>(high[place]) * node.boxes.step(k);
-        }
+      for (std::size_t place = 0; place < node.count(); ++place) {
+        const BoundingBox<Real> box = node.boxes.at(place);
         sum += detail::half_area(box);
         around.extend(corner(box.min), corner(box.max));
       }
@@ -92,22 +87,6 @@ class BvhRefit {
     return out;
   }
 
-  /// Sets boxes on the grid of a node, rounded outwards by up to two steps: no double.
-  static void quantize(std::span<const GrowingBox> boxes, const GrowingBox& around, QuantizedBox8<Real>& to) noexcept {
-    constexpr Real margin = Real(0.01);  // above the rounding of 65,535 steps in single precision
-    to.begin(around.box());
-    for (std::size_t k = 0; k < 3; ++k) {
-      const Real origin = to.origin[k], per_step = 1 / to.step(k);
-      for (std::size_t place = 0; place < boxes.size(); ++place) {
-        const Real low = (boxes[place].min[k] - origin) * per_step - margin,
-                   high = (boxes[place].max[k] - origin) * per_step + (1 + margin);
-        to.walls[k][0][place] = static_cast<std::uint16_t>(static_cast<std::int32_t>(low));
-        to.walls[k][1][place] = static_cast<std::uint16_t>(static_cast<std::int32_t>(high));
-      }
-    }
-    to.count = static_cast<std::uint8_t>(boxes.size());
-  }
-
   /// Computes all boxes, children first, and sets the tree unless its cost is too high.
   [[nodiscard]] bool finish(const Node* topology, const SharedArray<PrimitiveIndex>& order, std::size_t depth,
                             const Box& bounds, const auto& box_of, Bvh<Real>& to) {
@@ -121,18 +100,16 @@ class BvhRefit {
     double sum = 0;
     for (std::size_t i = nodes_.size(); i-- > 0;) {
       Node& node = nodes_[i] = topology[i];
-      const std::size_t count = node.boxes.count;
-      std::array<GrowingBox, places> boxes;
       GrowingBox around;
-      for (std::size_t place = 0; place < count; ++place) {
-        const std::size_t first = node.first(place), size = node.size(place);
-        boxes[place] =
+      for (std::size_t place = 0; place < node.count(); ++place) {
+        const std::size_t first = node.first[place], size = node.size[place];
+        const GrowingBox box =
             size > 0 ? rounded(box_of(std::span(order.data() + first, size)), centre, margin) : around_[first];
-        around.extend(boxes[place]);
-        sum += boxes[place].half_area();
+        node.boxes.put(place, box.box());
+        around.extend(box);
+        sum += box.half_area();
       }
       around_[i] = around;
-      quantize(std::span(boxes).first(count), around, node.boxes);
     }
     if (relative(sum, around_[0].half_area()) > max_growth * built_cost_) {
       built_cost_ = 0;

@@ -245,7 +245,7 @@ namespace PULSECAST_NAMESPACE {
 
 /// Prefetches an object into the cache.
 template <class T>
-inline void prefetch(const T* object) noexcept {
+[[gnu::always_inline]] inline void prefetch(const T* object) noexcept {
   for (std::size_t byte = 0; byte < sizeof(T); byte += 64)
     __builtin_prefetch(reinterpret_cast<const char*>(object) + byte);
 }

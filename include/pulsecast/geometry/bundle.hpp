@@ -165,6 +165,13 @@ struct StaggeredBundle : RayBundle {
 namespace detail {
 /// A range, or minus infinity for NaN.
 [[nodiscard]] inline double limit_of(double at) noexcept { return at > -infinity ? at : -infinity; }
+
+/// Hits that may need no further test, as `AnyHit` does after the first.
+template <class Hits>
+concept EndsEarly = requires(const Hits& hits) {
+  { hits.done() }
+  noexcept->std::same_as<bool>;
+};
 }  // namespace detail
 
 /// Closest hit so far of each ray of a bundle, or of one ray. Of equal ranges the least id wins.

@@ -33,13 +33,6 @@ struct Triangle {
 
 namespace detail {
 
-/// Hits that may need no further test, as `AnyHit` does after the first.
-template <class Hits>
-concept EndsEarly = requires(const Hits& hits) {
-  { hits.done() }
-  noexcept->std::same_as<bool>;
-};
-
 struct SolidEverywhere {
   bool operator()(std::size_t, PrimitiveIndex) const noexcept { return true; }
 };
@@ -90,12 +83,14 @@ struct TrianglePacket {
 /// distance by the sine of the angle between ray and plane; its range errs by that times one more
 /// than the aspect. A ray within 1e-12 rad of the plane misses, as does every ray if two edges are
 /// parallel to within 8 roundings (no area). Hits of ray j count with `solid(j, primitive)`,
-/// outside the holes of a mask. Never inlined: every accelerator gets the same bits.
-/// Source: volume test of Amanatides & Choi 1997 in the edge-symmetric form of Shevtsov, Soupikov &
-/// Kapustin 2007; interval inside the box: Kay & Kajiya 1986; bounds: Higham 2002, ch. 3.
+/// outside the holes of a mask. A single ray is known to be on one side of the planes of the
+/// triangles in the mask `certain`, if that is not 0, and to pass the others. Never inlined: every accelerator gets the
+/// same bits. Source: volume test of Amanatides & Choi 1997 in the edge-symmetric form of Shevtsov, Soupikov & Kapustin
+/// 2007; interval inside the box: Kay & Kajiya 1986; bounds: Higham 2002, ch. 3.
 template <class Rays, class Hits, class Solid = detail::SolidEverywhere>
 [[gnu::noinline]] void intersect(const TrianglePacket& triangles, std::span<const PrimitiveIndex> primitives,
-                                 const Rays& rays, Hits& nearest, [[maybe_unused]] const Solid& solid = {}) noexcept {
+                                 const Rays& rays, Hits& nearest, [[maybe_unused]] const Solid& solid = {},
+                                 [[maybe_unused]] unsigned certain = 0) noexcept {
   static_assert(RayBundle::lanes % simd::lane_count == 0);
   constexpr bool single = Rays::capacity == 1;  // a lane a triangle, not a lane a ray
   constexpr bool with_holes = !std::is_same_v<Solid, detail::SolidEverywhere>;
@@ -122,10 +117,10 @@ template <class Rays, class Hits, class Solid = detail::SolidEverywhere>
         ey * sz - ez * sy, ez * sx - ex * sz, ex * sy - ey * sx,
         (magnitude(ex) + magnitude(ey) + magnitude(ez)) * (magnitude(sx) + magnitude(sy) + magnitude(sz)) * tolerance};
   };
-  const Planes ab = planes(a, b), bc = planes(b, c), ca = planes(c, a);
+  [[maybe_unused]] Planes ab, bc, ca;
+  unsigned candidates = (1U << primitives.size()) - 1;
 
   // no ray is inside where all pass one plane on its right and one on its left; once more rounding
-  simd::Mask may_meet;
   const auto most = [&](const Planes& p) noexcept {
     return simd::max(p.x * rays.direction_min(0), p.x * rays.direction_max(0)) +
            simd::max(p.y * rays.direction_min(1), p.y * rays.direction_max(1)) +
@@ -136,19 +131,25 @@ template <class Rays, class Hits, class Solid = detail::SolidEverywhere>
            simd::min(p.y * rays.direction_min(1), p.y * rays.direction_max(1)) +
            simd::min(p.z * rays.direction_min(2), p.z * rays.direction_max(2));
   };
-  [[maybe_unused]] simd::Mask between_edges;  // of the only ray
-  if constexpr (single) {
-    const Vec3 d = rays.direction(0);
-    const auto side = [&](const Planes& p) noexcept { return simd::Doubles(d.x * p.x + d.y * p.y + d.z * p.z); };
-    const simd::Doubles u = side(ab), v = side(bc), w = side(ca);
-    between_edges = ((u >= -ab.doubt) & (v >= -bc.doubt) & (w >= -ca.doubt)) |
-                    ((u <= ab.doubt) & (v <= bc.doubt) & (w <= ca.doubt));
-    may_meet = between_edges;
+  if (!single || certain == 0) {
+    ab = planes(a, b);
+    bc = planes(b, c);
+    ca = planes(c, a);
+    simd::Mask may_meet;
+    if constexpr (single) {
+      const Vec3 d = rays.direction(0);
+      const auto side = [&](const Planes& p) noexcept { return simd::Doubles(d.x * p.x + d.y * p.y + d.z * p.z); };
+      const simd::Doubles u = side(ab), v = side(bc), w = side(ca);
+      may_meet = ((u >= -ab.doubt) & (v >= -bc.doubt) & (w >= -ca.doubt)) |
+                 ((u <= ab.doubt) & (v <= bc.doubt) & (w <= ca.doubt));
+    } else {
+      may_meet = ((most(ab) >= -4 * ab.doubt) & (most(bc) >= -4 * bc.doubt) & (most(ca) >= -4 * ca.doubt)) |
+                 ((least(ab) <= 4 * ab.doubt) & (least(bc) <= 4 * bc.doubt) & (least(ca) <= 4 * ca.doubt));
+    }
+    candidates &= simd::bits(may_meet);
   } else {
-    may_meet = ((most(ab) >= -4 * ab.doubt) & (most(bc) >= -4 * bc.doubt) & (most(ca) >= -4 * ca.doubt)) |
-               ((least(ab) <= 4 * ab.doubt) & (least(bc) <= 4 * bc.doubt) & (least(ca) <= 4 * ca.doubt));
+    candidates &= certain;
   }
-  unsigned candidates = simd::bits(may_meet) & ((1U << primitives.size()) - 1);
   if (candidates == 0) return;
 
   // planes and boxes of the triangles, the boxes widened by the roundings of a hit
@@ -213,7 +214,7 @@ template <class Rays, class Hits, class Solid = detail::SolidEverywhere>
     const Vec3 d = rays.direction(0);
     const Corner along{simd::Doubles{} + d.x, simd::Doubles{} + d.y, simd::Doubles{} + d.z};
     const simd::Doubles slope = along.x * normals.x + along.y * normals.y + along.z * normals.z;
-    simd::Mask hit = between_edges & (slope * slope > grazing);
+    simd::Mask hit = slope * slope > grazing;
     const simd::Doubles at = crossings(
         along, offsets, slope, widened(walls, 0.5), [&] { return walls; }, hit);
     hit &= at > rays.near;

@@ -119,7 +119,7 @@ namespace detail {
 struct CacheHeader {
   std::array<char, 8> mark{'P', 'C', 'S', 'C', 'E', 'N', 'E', '\n'};
   std::uint32_t order = 0x01020304;  ///< reads differently in another byte order
-  std::uint32_t format = 10;         ///< version of the layout of the file
+  std::uint32_t format = 11;         ///< version of the layout of the file
   Fingerprint program;               ///< hash of the library's version and the types in the file
   Fingerprint key;                   ///< key of the sources
   std::uint64_t size = 0;            ///< size of the file [byte]

@@ -162,7 +162,8 @@ class TriangleMesh {
     const TriangleMesh& mesh;
     const Rays& rays;
     Hits& nearest;
-    std::array<LineTest, by_line ? Rays::capacity : 1> lines{};  ///< of a single ray, or of each of a sheaf
+    [[no_unique_address]] std::array<LineTest, by_line ? Rays::capacity : 0>
+        lines{};  ///< of a single ray, or of each of a sheaf
 
     Test(const TriangleMesh& of, const Rays& by, Hits& found) noexcept : mesh(of), rays(by), nearest(found) {
       if constexpr (alone) lines[0] = LineTest(by, of.bounds());
@@ -186,16 +187,22 @@ class TriangleMesh {
                       [this](std::size_t j, PrimitiveIndex i) noexcept { return mesh.solid(i, rays, j); });
       test(primitives, triangle_of, detail::SolidEverywhere{});
     }
+    [[gnu::always_inline]] static void meet(const LineTest& line, const TrianglePacket& packet,
+                                            std::span<const PrimitiveIndex> primitives, const SingleRayPacket& ray,
+                                            auto& found, const auto& solid) noexcept {
+      const auto [possible, certain] = line.meet(packet);
+      if (possible != 0) intersect(packet, primitives, ray, found, solid, possible == certain ? certain : 0);
+    }
     // always inlined, as without masks it is all there is
     [[gnu::always_inline]] void test(std::span<const PrimitiveIndex> primitives, const auto& triangle_of,
                                      const auto& solid) const noexcept {
       if constexpr (alone) {
         const TrianglePacket packet(primitives.size(), triangle_of);
-        if (lines[0].may_meet(packet)) intersect(packet, primitives, rays, nearest, solid);
+        meet(lines[0], packet, primitives, rays, nearest, solid);
       } else if constexpr (in_sheaf) {
         const TrianglePacket packet(primitives.size(), triangle_of);
         for (std::size_t j = 0; j < rays.size; ++j)
-          if (lines[j].may_meet(packet)) intersect(packet, primitives, rays.rays[j], nearest.of[j], solid);
+          meet(lines[j], packet, primitives, rays.rays[j], nearest.of[j], solid);
       } else {
         intersect(primitives, triangle_of, rays, nearest, solid);
       }
@@ -211,7 +218,7 @@ class TriangleMesh {
         primitives = primitives.subspan(count);
       }
     }
-    void prefetch(std::span<const PrimitiveIndex> primitives) const noexcept {
+    [[gnu::always_inline]] void prefetch(std::span<const PrimitiveIndex> primitives) const noexcept {
       pulsecast::prefetch(mesh.triangles_.data() + place_of(primitives));
     }
 

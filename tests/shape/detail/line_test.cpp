@@ -19,7 +19,7 @@ namespace {
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
 bool may_meet(const Triangle& triangle, const SingleRayPacket& ray, const Box& bounds) {
-  return LineTest(ray, bounds).may_meet(TrianglePacket(1, [&](std::size_t) noexcept { return triangle; })) != 0;
+  return LineTest(ray, bounds).meet(TrianglePacket(1, [&](std::size_t) noexcept { return triangle; })).possible != 0;
 }
 
 bool meets(const Triangle& triangle, const SingleRayPacket& ray) {
@@ -67,12 +67,14 @@ TEST_CASE("each lane of a packet has its own bit, and idle lanes have that of th
   const Triangle ahead{{-1, 5, -1}, {1, 5, -1}, {0, 5, 1}}, beside{{9, 5, -1}, {11, 5, -1}, {10, 5, 1}};
   Box bounds = ahead.bounds();
   bounds.extend(beside.bounds());
-  const LineTest line(SingleRayPacket(Ray{}), bounds);
+  const SingleRayPacket ray;
+  const LineTest line(ray, bounds);
   for (std::size_t met = 0; met < simd::lane_count; ++met) {
     const TrianglePacket packet(simd::lane_count, [&](std::size_t n) noexcept { return n == met ? ahead : beside; });
-    CHECK(line.may_meet(packet) == 1U << met);
+    CHECK(line.meet(packet).possible == 1U << met);
   }
-  CHECK(line.may_meet(TrianglePacket(1, [&](std::size_t) noexcept { return ahead; })) == (1U << simd::lane_count) - 1);
+  CHECK(line.meet(TrianglePacket(1, [&](std::size_t) noexcept { return ahead; })).possible ==
+        (1U << simd::lane_count) - 1);
 }
 
 TEST_CASE("no triangle that a ray meets is passed over, at any scale, far from the origin, and in parts of any scale") {
@@ -104,6 +106,33 @@ TEST_CASE("no triangle that a ray meets is passed over, at any scale, far from t
   CHECK(passed == 0);
   CHECK(met > 100'000);
   CHECK(spared > 100'000);
+}
+
+TEST_CASE("what the line passes for certain is hit as if its sides had been computed again") {
+  constexpr std::uint64_t seed = 89;
+  CAPTURE(seed);
+  Generator random(seed);
+  long certain = 0, certain_hits = 0, other = 0;
+  for (int time = 0; time < 200'000; ++time) {
+    const double scale = random.log_uniform(1e-6, 1e6);
+    const Triangle t = any_triangle(random, scale);
+    const Vec3 origin = random.point(scale), aim = any_aim(random, t, scale);
+    const SingleRayPacket ray(Ray{.origin = origin, .direction = normalize(aim - origin)});
+    const Box bounds = t.bounds();
+    const TrianglePacket packet(1, [&](std::size_t) noexcept { return t; });
+    const LineTest::Met met = LineTest(ray, bounds).meet(packet);
+    if (met.certain == 0) continue;
+    ++certain;
+    const PrimitiveIndex primitive = 0;
+    ClosestHit at_once(infinity), again(infinity);
+    intersect(packet, {&primitive, 1}, ray, at_once, pulsecast::detail::SolidEverywhere{}, met.certain);
+    intersect(packet, {&primitive, 1}, ray, again);
+    certain_hits += again.met(0) ? 1 : 0;
+    other += at_once.range != again.range || at_once.id != again.id ? 1 : 0;
+  }
+  CHECK(other == 0);
+  CHECK(certain > 30'000);
+  CHECK(certain_hits > 30'000);
 }
 
 TEST_CASE("what overflows or underflows passes") {

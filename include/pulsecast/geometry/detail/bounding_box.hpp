@@ -72,67 +72,9 @@ struct Box8 {
       max[k][place] = box.max[k];
     }
   }
-};
-
-/// Up to eight boxes in half the memory, each rounded outwards to a grid of 65,536 steps an axis.
-/// Source: Mahovsky & Wyvill 2006; Ylitie, Karras & Laine 2017.
-template <std::floating_point Real>
-struct QuantizedBox8 {
-  std::uint16_t walls[3][2][8];  ///< grid coordinates by axis; lower walls first
-  Real origin[3];                ///< origin of the grid [m]
-  std::uint8_t exponent[3];      ///< binary exponent of the grid's step [m], biased by 127
-  std::uint8_t count = 0;        ///< number of slots that hold a box, the first ones
-
-  QuantizedBox8() noexcept {}  // leaves all but `count` uninitialized
-
-  /// Sets up the grid; `around` encloses all boxes to be added.
-  void begin(const BoundingBox<Real>& around) noexcept {
-    for (std::size_t k = 0; k < 3; ++k) {
-      const double extent = static_cast<double>(around.max[k]) - static_cast<double>(around.min[k]);
-      // exponent of a power of two above the ratio, as of `std::frexp`; of a subnormal one, too low
-      const auto e = static_cast<int>(std::bit_cast<std::uint64_t>(extent / (steps - 1)) >> 52U) - 1022;
-      origin[k] = around.min[k];
-      exponent[k] = static_cast<std::uint8_t>(127 + (extent > 0 ? std::max(e, min_exponent) : min_exponent));
-      for (auto& side : walls[k]) std::fill(std::begin(side), std::end(side), std::uint16_t{0});
-    }
-    count = 0;
+  [[nodiscard]] BoundingBox<Real> at(std::size_t place) const noexcept {
+    return {{min[0][place], min[1][place], min[2][place]}, {max[0][place], max[1][place], max[2][place]}};
   }
-
-  /// Appends a box, in the slot `count`.
-  void add(const BoundingBox<Real>& box) noexcept {
-    for (std::size_t k = 0; k < 3; ++k) {
-      const double start = static_cast<double>(origin[k]), per_step = 1 / static_cast<double>(step(k));
-      const double low = (static_cast<double>(box.min[k]) - start) * per_step,
-                   high = (static_cast<double>(box.max[k]) - start) * per_step;
-      const auto down = static_cast<std::uint32_t>(low), truncated = static_cast<std::uint32_t>(high);
-      walls[k][0][count] = static_cast<std::uint16_t>(down);
-      walls[k][1][count] = static_cast<std::uint16_t>(truncated + (truncated < high ? 1U : 0U));
-    }
-    ++count;
-  }
-
-  /// Steps of the grid along the axes [m]; the last lane is of no use.
-  [[nodiscard]] simd::Vec4<Real> step4() const noexcept {
-#if defined(__AVX2__)  // shifts by lane
-    if constexpr (sizeof(Real) == 4) {
-      using Words = simd::Vec<std::uint32_t, 4>;
-      static_assert(offsetof(QuantizedBox8, count) == offsetof(QuantizedBox8, exponent) + 3);
-      const Words exponents = Words{} + simd::load<std::uint32_t>(exponent[0]);
-      return simd::load<simd::Vec4<Real>>(exponents << Words{23, 15, 7, 0} & 0x7F800000U);
-    }
-#endif
-    return {step(0), step(1), step(2)};
-  }
-  [[nodiscard]] Real step(std::size_t k) const noexcept {
-    if constexpr (sizeof(Real) == 4)
-      return std::bit_cast<Real>(std::uint32_t{exponent[k]} << 23);
-    else
-      return std::bit_cast<Real>((std::uint64_t{exponent[k]} + (1023 - 127)) << 52);
-  }
-
- private:
-  static constexpr double steps = 65535;
-  static constexpr int min_exponent = -126;
 };
 
 }  // namespace PULSECAST_NAMESPACE

@@ -69,22 +69,6 @@ class BundleInterval {
               (simd::load<simd::Packet<Real>>(boxes.max[k][first]) - axis.origin_low) * axis.per_max};
     });
   }
-  [[nodiscard]] unsigned inside(const QuantizedBox8<Real>& boxes, Real limit, Entries& entries) const noexcept {
-    // two roundings of a wall's distance, as the steps of its grid are powers of two
-    Real to_low[3], to_high[3], steps[3];
-    for (std::size_t k = 0; k < 3; ++k) {
-      to_low[k] = boxes.origin[k] - axes_[k].origin_high;
-      to_high[k] = boxes.origin[k] - axes_[k].origin_low;
-      steps[k] = boxes.step(k);
-    }
-    const auto walls_of = [&](std::size_t k, std::size_t first) noexcept -> Walls {
-      const auto& walls = boxes.walls[k];
-      const Axis& axis = axes_[k];
-      return {(simd::packet_from<Real>(walls[0][first]) * steps[k] + to_low[k]) * axis.per_min,
-              (simd::packet_from<Real>(walls[1][first]) * steps[k] + to_high[k]) * axis.per_max};
-    };
-    return inside(limit, entries, walls_of) & ((1U << boxes.count) - 1);
-  }
 
   /// Part of an interval in which any ray may be at or above, or below, a plane on axis k.
   [[nodiscard]] Span above(Span span, int k, Real position) const noexcept {
@@ -195,15 +179,16 @@ class RayInterval {
     const Axes margin = slack + (magnitude(o) + (high - low)) * Axes(tolerance / 2);
     const Axes outwards = margin * sense(direction), least(min_speed * ray.direction_length);
     const Axes slowness = sense(direction) / simd::max(magnitude(direction), least);
-    per_ = (slowness * Axes(1 - tolerance)).template as<Real>();
-    start_[0] = (Axes(0) - (o + outwards)).template as<Real>() * per_;
-    start_[1] = (outwards - o).template as<Real>() * per_;
+    const auto per = (slowness * Axes(1 - tolerance)).template as<Real>();
+    simd::store(per, maps_.per[0]);
+    simd::store((Axes(0) - (o + outwards)).template as<Real>() * per, maps_.start[0][0]);
+    simd::store((outwards - o).template as<Real>() * per, maps_.start[1][0]);
     for (std::size_t k = 0; k < 3; ++k)
-      entry_wall_[k] = 2 * k * wall_bytes + (std::signbit(direction[k]) ? wall_bytes : 0);
+      maps_.entry_wall[k] = k * wall_bytes + (std::signbit(direction[k]) ? 3 * wall_bytes : 0);
     const Axes both = o + direction;
     const bool is_valid = std::isfinite(both[0] + both[1] + both[2]);  // infinity and NaN miss
-    near_ = is_valid ? static_cast<Real>(ray.near * (1 - tolerance)) + Real{0}
-                     : std::numeric_limits<Real>::infinity();  // no -0
+    maps_.near = is_valid ? static_cast<Real>(ray.near * (1 - tolerance)) + Real{0}
+                          : std::numeric_limits<Real>::infinity();  // no -0
   }
 
   [[nodiscard]] Real limit(const auto&, const auto& nearest) const noexcept {
@@ -212,24 +197,22 @@ class RayInterval {
 
   /// Bit mask of the boxes that the ray may be inside of at a range up to `limit`, and their keys.
   // always inlined into the traversal, which saves 20 instructions a node
-  [[nodiscard, gnu::always_inline]] unsigned inside(const QuantizedBox8<Real>& boxes, Real limit,
-                                                    Keys& keys) const noexcept {
-    const Maps maps = wall_maps(boxes);
+  [[nodiscard, gnu::always_inline]] unsigned inside(const Box8<Real>& boxes, Real limit, Keys& keys) const noexcept {
+    const Maps* maps = &maps_;
+    asm("" : "+r"(maps));  // numbers for all lanes are loaded here: there are too few registers to keep them
     unsigned met = 0;
     for (std::size_t first = 0; first < 8; first += lanes) {
-      Packet entry = near_ - Packet{}, exit = limit - Packet{};
-      clip(0, boxes, first, maps, entry, exit);
-      clip(1, boxes, first, maps, entry, exit);
-      clip(2, boxes, first, maps, entry, exit);
+      Packet entry = maps->near - Packet{}, exit = limit - Packet{};
+      clip(0, boxes, first, *maps, entry, exit);
+      clip(1, boxes, first, *maps, entry, exit);
+      clip(2, boxes, first, *maps, entry, exit);
       simd::store(KeyPacket(entry) & ~Key{7}, keys[first]);
       met |= simd::bits(entry <= exit * static_cast<Real>(1 + 3 * tolerance)) << first;
     }
-    static constexpr std::array<std::uint8_t, 9> in_use{0, 1, 3, 7, 15, 31, 63, 127, 255};
-    return met & in_use[boxes.count];
+    return met;
   }
 
  private:
-  using boxes_type = QuantizedBox8<Real>;
   using Packet = simd::Packet<Real>;
   static constexpr std::size_t lanes = simd::packet_size<Real>;
   using KeyPacket = simd::Vec<Key, lanes>;
@@ -240,42 +223,30 @@ class RayInterval {
   /// Least speed along an axis, relative to the direction's length. Slower rays count as this fast:
   /// from the margin on, they leave a box so late that no hit lies beyond.
   static constexpr double min_speed = 1e-18;
-  static constexpr std::size_t wall_bytes = sizeof(boxes_type::walls[0][0]);
-
-  /// Linear maps from the number of a wall to range, by axis, for entry and for exit.
-  struct Maps {
-    alignas(4 * sizeof(Real)) Real scale[4], start[2][4];
-  };
-
-  /// The wall's position errs by two roundings of the distance to the origin, plus four and a half
-  /// of half the bounds; the range, by two. `per_` is too small, so that the entry is not late.
-  [[nodiscard, gnu::always_inline]] Maps wall_maps(const QuantizedBox8<Real>& boxes) const noexcept {
-    using Axes = simd::Vec4<Real>;
-    Maps maps;
-    simd::store(boxes.step4() * per_, maps.scale[0]);
-    const Axes to_grid = Axes::from(boxes.origin[0]) * per_;
-    simd::store(to_grid + start_[0], maps.start[0][0]);
-    simd::store(to_grid + start_[1], maps.start[1][0]);
-    asm("" : "+m"(maps));  // from memory, a lane is loaded into all by one instruction
-    return maps;
-  }
-
-  /// Cuts the intervals of consecutive boxes down to what lies between their walls on axis k.
-  [[gnu::always_inline]] void clip(std::size_t k, const boxes_type& boxes, std::size_t first, const Maps& maps,
-                                   Packet& entry, Packet& exit) const noexcept {
-    const char* const walls = reinterpret_cast<const char*>(&boxes.walls[0][0][first]);
-    const auto numbers = [&](std::size_t byte) noexcept {
-      return simd::packet_from<Real>(*reinterpret_cast<const std::uint16_t*>(walls + byte));
-    };
-    // NaN fails every comparison
-    entry = simd::max(numbers(entry_wall_[k]) * maps.scale[k] + maps.start[0][k], entry);
-    exit = simd::min(numbers(entry_wall_[k] ^ wall_bytes) * maps.scale[k] + maps.start[1][k], exit);
-  }
+  static constexpr std::size_t wall_bytes = sizeof(Box8<Real>::min[0]);
 
   /// Linear maps from a wall's coordinate on each axis to range, with margins: entry, exit.
-  simd::Vec4<Real> per_, start_[2];
-  Real near_;
-  std::size_t entry_wall_[3];  ///< byte of the walls where boxes are entered
+  struct Maps {
+    alignas(4 * sizeof(Real)) Real per[4], start[2][4];
+    Real near;
+    std::size_t entry_wall[3];  ///< byte of the walls where boxes are entered
+  };
+
+  /// Cuts the intervals of consecutive boxes down to what lies between their walls on axis k. A
+  /// wall's position errs by two roundings of the distance to the origin, plus two of half the
+  /// bounds; the range, by two. `per` is too small, so that the entry is not late.
+  [[gnu::always_inline]] void clip(std::size_t k, const Box8<Real>& boxes, std::size_t first, const Maps& maps,
+                                   Packet& entry, Packet& exit) const noexcept {
+    const char* const walls = reinterpret_cast<const char*>(&boxes.min[0][first]);
+    const auto range_of = [&](std::size_t byte, std::size_t side) noexcept -> Packet {
+      return simd::load<Packet>(walls[byte]) * maps.per[k] + maps.start[side][k];
+    };
+    // NaN fails every comparison
+    entry = simd::max(range_of(maps.entry_wall[k], 0), entry);
+    exit = simd::min(range_of(3 * wall_bytes + 2 * k * wall_bytes - maps.entry_wall[k], 1), exit);
+  }
+
+  Maps maps_;
 };
 
 }  // namespace PULSECAST_NAMESPACE
