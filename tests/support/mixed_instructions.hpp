@@ -35,7 +35,7 @@ namespace {
 [[nodiscard, maybe_unused]] AnswerOfFile answer_of_this_file() {
   using Mesh = TriangleMesh<>;
   using Intersect = void(const TrianglePacket&, std::span<const PrimitiveIndex>, const RayBundle&, ClosestHits&,
-                         const detail::SolidEverywhere&) noexcept;
+                         const detail::SolidEverywhere&, unsigned) noexcept;
   MeshData ridge;
   for (std::uint32_t i = 0; i < 60; ++i) {
     const double x = 2.0 * i - 60, height = 3 * (i % 7) + 0.25 * (i % 3);
