@@ -3,6 +3,7 @@
 #ifndef PULSECAST_SCENE_DETAIL_RAY_QUERIES_HPP
 #define PULSECAST_SCENE_DETAIL_RAY_QUERIES_HPP
 
+#include <pulsecast/geometry/detail/ray_sheaf.hpp>
 #include <pulsecast/geometry/triangle.hpp>
 #include <pulsecast/scene/part.hpp>
 

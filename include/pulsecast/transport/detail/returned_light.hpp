@@ -3,6 +3,7 @@
 #ifndef PULSECAST_TRANSPORT_DETAIL_RETURNED_LIGHT_HPP
 #define PULSECAST_TRANSPORT_DETAIL_RETURNED_LIGHT_HPP
 
+#include <pulsecast/geometry/single_ray.hpp>
 #include <pulsecast/transport/transport_input.hpp>
 
 /// Light that the hits of a bundle send back, for all transports.
