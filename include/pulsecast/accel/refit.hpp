@@ -72,7 +72,6 @@ class BvhRefit {
  private:
   using Node = typename Bvh<Real>::Node;
   using GrowingBox = detail::GrowingBox<Real>;
-  static constexpr std::size_t places = Bvh<Real>::places;
 
   static simd::Vec4<Real> corner(const Real (&at)[3]) noexcept { return {at[0], at[1], at[2]}; }
   static double relative(double sum, double root) noexcept { return root > 0 ? sum / root : 0; }

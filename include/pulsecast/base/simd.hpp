@@ -49,36 +49,6 @@ inline constexpr std::size_t packet_size = register_bytes < 8 * sizeof(Real) ? r
 template <class Real>
 using Packet = Vec<Real, packet_size<Real>>;
 
-/// Packet of consecutive 16-bit integers in memory, beginning with `first`.
-template <class Real>
-[[nodiscard]] inline Packet<Real> packet_from(const std::uint16_t& first) noexcept {
-  using Halves = Vec<std::uint16_t, 8>;
-  using Words = Vec<std::int32_t, packet_size<Real>>;
-  if constexpr (packet_size<Real> == 8) {
-    Halves halves;
-    std::memcpy(&halves, &first, sizeof halves);
-#if defined(__AVX2__) && !defined(__clang__)  // g++ 12 would convert half a register at a time
-    return __builtin_convertvector(Words(__builtin_ia32_pmovzxwd256(Vec<short, 8>(halves))), Packet<Real>);
-#else
-    return __builtin_convertvector(__builtin_convertvector(halves, Words), Packet<Real>);
-#endif
-  } else if constexpr (packet_size<Real> == 4) {
-    std::uint64_t four;
-    std::memcpy(&four, &first, sizeof four);
-    const Halves halves = Halves(Vec<std::uint64_t, 2>{four, 0});
-#if defined(__clang__)
-    const Halves interleaved = __builtin_shufflevector(halves, Halves{}, 0, 8, 1, 9, 2, 10, 3, 11);
-#else  // g++ 11 lacks __builtin_shufflevector
-    const Halves interleaved = __builtin_shuffle(halves, Halves{}, Halves{0, 8, 1, 9, 2, 10, 3, 11});
-#endif
-    return __builtin_convertvector(Words(interleaved), Packet<Real>);
-  } else {
-    static_assert(packet_size<Real> == 2);
-    const std::uint16_t* two = &first;
-    return Packet<Real>{static_cast<Real>(two[0]), static_cast<Real>(two[1])};
-  }
-}
-
 /// Register whose lanes are `number(lane)`.
 [[nodiscard]] inline Doubles generate(const auto& number) noexcept {
   return [&]<std::size_t... lane>(std::index_sequence<lane...>) { return Doubles{number(lane)...}; }

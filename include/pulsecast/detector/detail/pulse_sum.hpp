@@ -107,7 +107,8 @@ class SampledSum {
     double n = sample_;
     const double full = n + static_cast<double>(std::min(samples.size(), y.capacity() - y.size() - 1));
     Edges edges;
-    std::size_t lane = find_edges(edges);
+    find_edges(edges);
+    std::size_t lane = 0;
     if (edges.sample[0] <= n + gap && edges.sample[0] < full) {
       sum.advance(step_, decay_);
       do {
@@ -117,7 +118,10 @@ class SampledSum {
         }
         sum.add(edges.age[lane], edges.weight[lane]);
         ++next_;
-        if (++lane == simd::lane_count) lane = find_edges(edges);
+        if (++lane == simd::lane_count) {
+          find_edges(edges);
+          lane = 0;
+        }
       } while (edges.sample[lane] <= n + gap && edges.sample[lane] < full);
       *to++ = sum.power();
       ++n;
@@ -155,8 +159,8 @@ class SampledSum {
   struct Edges {
     std::array<double, simd::lane_count> sample, age, weight;
   };
-  /// Sets those of the next reflections; returns the first lane.
-  std::size_t find_edges(Edges& edges) const noexcept {
+  /// Sets those of the next reflections.
+  void find_edges(Edges& edges) const noexcept {
     const std::size_t left = reflections_.size() - next_;
     const Reflection* const from = reflections_.data() + (left > 0 ? next_ : 0);
     const auto of = [&](double Reflection::*member) noexcept {
@@ -171,7 +175,6 @@ class SampledSum {
     simd::store(simd::Doubles(of(&Reflection::power) * exponential(simd::Doubles(-age))), edges.weight);
     for (std::size_t lane = left; lane < simd::lane_count; ++lane)
       edges.sample[lane] = std::numeric_limits<double>::infinity();
-    return 0;
   }
 
   void find_next_edge() noexcept {

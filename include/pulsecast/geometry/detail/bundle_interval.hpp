@@ -32,7 +32,7 @@ class BundleInterval {
       const double low = rays.direction_min(k), high = rays.direction_max(k);
       if (!(low <= high)) near_ = infinity;
       const double o = rays.origin[k] - centre[k];
-      // rounding to Real; a wall is at most three half extents from the origin of a grid
+      // rounding to Real, of the origin and of walls
       const double extent = 0.5 * (bounds.max[k] - bounds.min[k]);
       const double reach = reach_of(rays, k),
                    margin = reach + slack + (4 * (std::fabs(o) + reach) + 8 * extent) * epsilon;
