@@ -104,10 +104,12 @@ class TriangleMesh {
     }
   }
 
-  /// As for each ray of a sheaf, in one traversal.
-  void closest(const detail::RaySheaf& rays, detail::SheafHits& nearest)
+  /// As for each ray of a sheaf, in one traversal. A template, as clang 14 instantiates other members whose requirements
+  /// are not met when it instantiates the class.
+  template <std::same_as<detail::SheafHits> Hits>
+  void closest(const detail::RaySheaf& rays, Hits& nearest)
       const noexcept requires std::is_same_v<Index, Bvh<float>> && std::is_same_v<Masks, detail::NoMasks> {
-    index_.closest(rays, Test<detail::RaySheaf, detail::SheafHits>(*this, rays, nearest), nearest);
+    index_.closest(rays, Test<detail::RaySheaf, Hits>(*this, rays, nearest), nearest);
   }
 
   /// True only if no ray of a cone comes near a triangle.
