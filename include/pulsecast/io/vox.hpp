@@ -3,10 +3,8 @@
 #ifndef PULSECAST_IO_VOX_HPP
 #define PULSECAST_IO_VOX_HPP
 
-#include <filesystem>
-#include <optional>
-
 #include <pulsecast/base/compiled.hpp>
+#include <pulsecast/io/format_rules.hpp>
 #include <pulsecast/shape/voxel_data.hpp>
 
 namespace PULSECAST_NAMESPACE::io {
@@ -51,19 +49,6 @@ struct VoxelFile {
 /// Source: AMAPVox (Vincent et al. 2017); Weiser et al. 2021, opaque voxel-based tree models.
 [[nodiscard]] VoxelFile read_voxel_file(const std::filesystem::path& path, const VoxelFileSettings& settings = {});
 
-}  // namespace PULSECAST_NAMESPACE::io
-
-#if PULSECAST_DEFINES(IO_VOX)
-#include <cmath>
-#include <set>
-
-#include <pulsecast/base/random.hpp>
-#include <pulsecast/io/detail/cell_numbers.hpp>
-#include <pulsecast/io/detail/text/table.hpp>
-#include <pulsecast/io/format_rules.hpp>
-
-namespace PULSECAST_NAMESPACE::io {
-
 namespace detail {
 
 /// Keys and columns of voxel files. Source: AMAPVox (Vincent et al. 2017).
@@ -79,6 +64,22 @@ inline constexpr auto vox_rules = std::to_array<FormatRule>({
     {"column transmittance", FormatUse::read, "1 or NaN: without a cube, for opaque and scaled voxels"},
     {"*", FormatUse::read, "nothing: other columns and keys tell how the voxels were measured"},
 });
+
+}  // namespace detail
+
+}  // namespace PULSECAST_NAMESPACE::io
+
+#if PULSECAST_DEFINES(IO_VOX)
+#include <cmath>
+#include <set>
+
+#include <pulsecast/base/random.hpp>
+#include <pulsecast/io/detail/cell_numbers.hpp>
+#include <pulsecast/io/detail/text/table.hpp>
+
+namespace PULSECAST_NAMESPACE::io {
+
+namespace detail {
 
 class VoxelFileReader {
  public:
