@@ -188,13 +188,14 @@ template <class Rays, class Hits, class Solid = detail::SolidEverywhere>
     return {{low.x - by, low.y - by, low.z - by}, {high.x + by, high.y + by, high.z + by}, margin};
   };
   const auto crossings = [&](const Corner& d, const simd::Doubles& offset, const simd::Doubles& slope,
-                             const Walls& inner, const auto& box, simd::Mask& inside) noexcept {
+                             const Walls& inner, const auto& box, simd::Mask& inside, unsigned lanes) noexcept {
     const simd::Doubles at = offset / slope;
     const auto within = [&](simd::Doubles Corner::*axis) noexcept {
       const simd::Doubles place = at * (d.*axis);
       return simd::Mask((place >= inner.low.*axis) & (place <= inner.high.*axis));
     };
-    if (simd::bits(inside & ~(within(&Corner::x) & within(&Corner::y) & within(&Corner::z))) == 0) [[likely]]
+    const simd::Mask outside = inside & ~(within(&Corner::x) & within(&Corner::y) & within(&Corner::z));
+    if ((simd::bits(outside) & lanes) == 0) [[likely]]
       return at;
     const Walls outer = widened(box(), 1);
     simd::Doubles exit = simd::Doubles{} + detail::infinity, entry = -exit;
@@ -216,7 +217,7 @@ template <class Rays, class Hits, class Solid = detail::SolidEverywhere>
     const simd::Doubles slope = along.x * normals.x + along.y * normals.y + along.z * normals.z;
     simd::Mask hit = slope * slope > grazing;
     const simd::Doubles at = crossings(
-        along, offsets, slope, widened(walls, 0.5), [&] { return walls; }, hit);
+        along, offsets, slope, widened(walls, 0.5), [&] { return walls; }, hit, candidates);
     hit &= at > rays.near;
     for (candidates &= simd::bits(hit); candidates != 0; candidates &= candidates - 1) {
       const auto t = static_cast<std::size_t>(std::countr_zero(candidates));
@@ -255,7 +256,7 @@ template <class Rays, class Hits, class Solid = detail::SolidEverywhere>
 
         const simd::Doubles slope = d.x * normals.x[t] + d.y * normals.y[t] + d.z * normals.z[t];
         inside &= slope * slope > grazing[t];
-        const simd::Doubles at = crossings(d, simd::Doubles{} + offsets[t], slope, inner, of_one, inside);
+        const simd::Doubles at = crossings(d, simd::Doubles{} + offsets[t], slope, inner, of_one, inside, ~0U);
 
         const simd::Doubles best = simd::load<simd::Doubles>(nearest.range[j]);
         const simd::Ids best_id = simd::load<simd::Ids>(nearest.id[j]),
