@@ -170,22 +170,33 @@ class Bvh {
     using Interval = RayInterval<Real>;
     const auto size_of = [](typename Interval::Key key) noexcept { return static_cast<std::uint32_t>(key & 7); };
     const Interval interval(rays, bounds_, centre_);
-    const Node* node = nodes_.data();
     std::array<Child, (places - 1) * detail::max_depth + 1> stack;
     Child* top = stack.data();
     Real limit = interval.limit(rays, nearest);
+    Child next{0, 0};
+    const auto take_next = [&]() noexcept {  // false without one
+      do {
+        if (top == stack.data()) return false;
+        next = *--top;
+      } while (next.key > Interval::last_key(limit));
+      return true;
+    };
     for (;;) {
-      typename Interval::Keys keys;
-      unsigned met = interval.inside(node->boxes, limit, keys) & node->used;
-      const auto take_first = [&]() noexcept -> Child {
-        const auto place = static_cast<std::size_t>(std::countr_zero(met));
-        met &= met - 1;
-        return {keys[place] | static_cast<int>(node->size[place]), node->first[place]};
-      };
-      Child next{0, 0};
-      bool found = met != 0;
-      if (found) {  // nearest child next; the others on the stack, nearest on top
-        next = take_first();
+      const auto in_registers = interval.loaded();
+      do {
+        const Node& node = nodes_[next.first];
+        typename Interval::Keys keys;
+        unsigned met = in_registers.inside(node.boxes, limit, keys) & node.used;
+        const auto take_first = [&]() noexcept -> Child {
+          const auto place = static_cast<std::size_t>(std::countr_zero(met));
+          met &= met - 1;
+          return {keys[place] | static_cast<int>(node.size[place]), node.first[place]};
+        };
+        if (met == 0) {
+          if (!take_next()) return;
+          continue;
+        }
+        next = take_first();  // nearest child next; the others on the stack, nearest on top
         const Child* const bottom = top;
         while (met != 0) {
           Child other = take_first();
@@ -195,20 +206,12 @@ class Bvh {
           for (; place != bottom && place[-1].key < other.key; --place) *place = place[-1];
           *place = other;
         }
-      }
-      for (;; found = false) {
-        if (!found) {
-          do {
-            if (top == stack.data()) return;
-            next = *--top;
-          } while (next.key > Interval::last_key(limit));
-        }
-        const std::uint32_t size = size_of(next.key);
-        if (size == 0) break;
-        test(std::span<const PrimitiveIndex>(primitives_.data() + next.first, size));
+      } while (size_of(next.key) == 0);
+      do {
+        test(std::span<const PrimitiveIndex>(primitives_.data() + next.first, size_of(next.key)));
         limit = interval.limit(rays, nearest);
-      }
-      node = &nodes_[next.first];
+        if (!take_next()) return;
+      } while (size_of(next.key) != 0);
     }
   }
 

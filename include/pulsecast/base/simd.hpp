@@ -89,6 +89,24 @@ inline void add_lanes(double& sum, const Doubles& v) noexcept {
   return most;
 }
 
+/// Bit mask of the lanes where a mask is set.
+[[nodiscard]] inline unsigned bits(const auto& mask) noexcept {
+  constexpr std::size_t lanes = sizeof mask / sizeof mask[0];
+#if defined(__SSE2__)
+  if constexpr (sizeof mask == 16)
+    return static_cast<unsigned>(lanes == 4 ? __builtin_ia32_movmskps(Vec<float, 4>(mask))
+                                            : __builtin_ia32_movmskpd(Vec<double, 2>(mask)));
+#endif
+#if defined(__AVX__)
+  if constexpr (sizeof mask == 32)
+    return static_cast<unsigned>(lanes == 8 ? __builtin_ia32_movmskps256(Vec<float, 8>(mask))
+                                            : __builtin_ia32_movmskpd256(Vec<double, 4>(mask)));
+#endif
+  unsigned set = 0;
+  for (std::size_t lane = 0; lane < lanes; ++lane) set |= mask[lane] != 0 ? 1U << lane : 0U;
+  return set;
+}
+
 /// Four numbers in one or more registers: three coordinates and a spare lane.
 template <class Real>
 struct Vec4 {
@@ -104,9 +122,9 @@ struct Vec4 {
   explicit Vec4(Real all) noexcept {
     each([&](std::size_t i) { parts[i] = Part{} + all; });
   }
-  /// Sets the lanes to x, y, z and 1.
+  /// Sets the lanes to x, y, z and 0.
   Vec4(Real x, Real y, Real z) noexcept {
-    const Vec<Real, 4> whole{x, y, z, 1};
+    const Vec<Real, 4> whole{x, y, z, 0};
     std::memcpy(parts, &whole, sizeof parts);
   }
   /// Loads four consecutive numbers, beginning with `first`.
@@ -151,9 +169,17 @@ struct Vec4 {
   friend Vec4 magnitude(const Vec4& a) noexcept {
     return made([&](std::size_t i) { return Part(Bits(a.parts[i]) & ~sign_bit); });
   }
-  /// Lane-wise sign: -1 if the sign bit is set, else 1.
-  friend Vec4 sense(const Vec4& a) noexcept {
-    return made([&](std::size_t i) { return Part((Bits(a.parts[i]) & sign_bit) | Bits(Part{} + 1)); });
+  /// Magnitudes with the signs of `b`.
+  friend Vec4 with_sign(const Vec4& magnitudes, const Vec4& b) noexcept {
+    return made([&](std::size_t i) { return Part(Bits(magnitudes.parts[i]) | (Bits(b.parts[i]) & sign_bit)); });
+  }
+  /// Bit mask of the lanes with a sign bit.
+  friend unsigned signs(const Vec4& a) noexcept {
+    unsigned set = 0;
+    each([&](std::size_t i) {
+      set |= bits(Vec<std::make_signed_t<Word>, 4 / count>(a.parts[i]) < 0) << (i * 4 / count);
+    });
+    return set;
   }
 
  private:
@@ -190,24 +216,6 @@ template <class V, class Number>
 
 /// Stores a vector to consecutive numbers, beginning with `first`.
 inline void store(const auto& v, auto& first) noexcept { std::memcpy(&first, &v, sizeof v); }
-
-/// Bit mask of the lanes where a mask is set.
-[[nodiscard]] inline unsigned bits(const auto& mask) noexcept {
-  constexpr std::size_t lanes = sizeof mask / sizeof mask[0];
-#if defined(__SSE2__)
-  if constexpr (sizeof mask == 16)
-    return static_cast<unsigned>(lanes == 4 ? __builtin_ia32_movmskps(Vec<float, 4>(mask))
-                                            : __builtin_ia32_movmskpd(Vec<double, 2>(mask)));
-#endif
-#if defined(__AVX__)
-  if constexpr (sizeof mask == 32)
-    return static_cast<unsigned>(lanes == 8 ? __builtin_ia32_movmskps256(Vec<float, 8>(mask))
-                                            : __builtin_ia32_movmskpd256(Vec<double, 4>(mask)));
-#endif
-  unsigned set = 0;
-  for (std::size_t lane = 0; lane < lanes; ++lane) set |= mask[lane] != 0 ? 1U << lane : 0U;
-  return set;
-}
 
 }  // namespace PULSECAST_NAMESPACE::simd
 

@@ -62,16 +62,69 @@ struct TrianglePacket {
     }
     (std::make_index_sequence<simd::lane_count>());
     const auto corner = [&](const auto& of_triangle) noexcept {
-      const auto coordinate = [&](double Vec3::*axis) noexcept {
-        return simd::generate([&](std::size_t lane) { return of_triangle(triangles[lane]).*axis; });
+      const auto pair = [&](std::size_t lane) noexcept {
+        return simd::load<simd::Vec<double, 2>>(of_triangle(triangles[lane]).x);
       };
-      return Corner{coordinate(&Vec3::x), coordinate(&Vec3::y), coordinate(&Vec3::z)};
+      const auto z = [&](std::size_t lane) noexcept { return of_triangle(triangles[lane]).z; };
+      if constexpr (simd::lane_count == 2) {
+        const auto even = pair(0), odd = pair(1);
+        return Corner{__builtin_shufflevector(even, odd, 0, 2), __builtin_shufflevector(even, odd, 1, 3),
+                      simd::generate(z)};
+      } else {
+        const auto even = __builtin_shufflevector(pair(0), pair(2), 0, 1, 2, 3),
+                   odd = __builtin_shufflevector(pair(1), pair(3), 0, 1, 2, 3);
+        return Corner{__builtin_shufflevector(even, odd, 0, 4, 2, 6), __builtin_shufflevector(even, odd, 1, 5, 3, 7),
+                      simd::generate(z)};
+      }
     };
     a = corner([](const auto& triangle) noexcept -> const Vec3& { return triangle.a; });
     b = corner([](const auto& triangle) noexcept -> const Vec3& { return triangle.b; });
     c = corner([](const auto& triangle) noexcept -> const Vec3& { return triangle.c; });
   }
 };
+
+namespace detail {
+
+/// Lane-wise magnitude.
+[[nodiscard]] inline simd::Doubles magnitude(const simd::Doubles& v) noexcept {
+  return simd::Doubles(simd::Ids(v) & 0x7FFF'FFFF'FFFF'FFFF);
+}
+
+/// Planes through a ray's origin and an edge of each triangle, and the bound below which a side is
+/// in doubt: |e||s| in the 1-norm bounds each sum of products, which is at most seven roundings off.
+struct EdgePlanes {
+  simd::Doubles x, y, z, doubt;
+
+  EdgePlanes() = default;
+  [[gnu::always_inline]] EdgePlanes(const TrianglePacket::Corner& from, const TrianglePacket::Corner& to,
+                                    double direction_length) noexcept {
+    const simd::Doubles tolerance = simd::Doubles{} + 4 * std::numeric_limits<double>::epsilon() * direction_length;
+    const simd::Doubles ex = to.x - from.x, ey = to.y - from.y, ez = to.z - from.z;
+    const simd::Doubles sx = to.x + from.x, sy = to.y + from.y, sz = to.z + from.z;
+    x = ey * sz - ez * sy;
+    y = ez * sx - ex * sz;
+    z = ex * sy - ey * sx;
+    doubt =
+        (magnitude(ex) + magnitude(ey) + magnitude(ez)) * (magnitude(sx) + magnitude(sy) + magnitude(sz)) * tolerance;
+  }
+};
+
+/// Bit mask of the triangles that a single ray's line may hit, idle lanes included.
+[[nodiscard, gnu::noinline]] inline unsigned on_one_side(const TrianglePacket& triangles, const auto& ray) noexcept {
+  using Corner = TrianglePacket::Corner;
+  const auto from_origin = [&](const Corner& p) noexcept -> Corner {
+    return {p.x - ray.origin.x, p.y - ray.origin.y, p.z - ray.origin.z};
+  };
+  const Corner a = from_origin(triangles.a), b = from_origin(triangles.b), c = from_origin(triangles.c);
+  const EdgePlanes ab(a, b, ray.direction_length), bc(b, c, ray.direction_length), ca(c, a, ray.direction_length);
+  const Vec3 d = ray.direction(0);
+  const auto side = [&](const EdgePlanes& p) noexcept { return simd::Doubles(d.x * p.x + d.y * p.y + d.z * p.z); };
+  const simd::Doubles u = side(ab), v = side(bc), w = side(ca);
+  return simd::bits(((u >= -ab.doubt) & (v >= -bc.doubt) & (w >= -ca.doubt)) |
+                    ((u <= ab.doubt) & (v <= bc.doubt) & (w <= ca.doubt)));
+}
+
+}  // namespace detail
 
 /// Intersects the triangles of primitives with every ray of a bundle, or with a `SingleRayPacket`:
 /// the deciding test, always in double precision. A ray is inside if it is on the same side of the
@@ -96,59 +149,34 @@ template <class Rays, class Hits, class Solid = detail::SolidEverywhere>
   constexpr bool with_holes = !std::is_same_v<Solid, detail::SolidEverywhere>;
   constexpr double unit = std::numeric_limits<double>::epsilon();
   using Corner = TrianglePacket::Corner;
-  const auto magnitude = [](const simd::Doubles& v) noexcept {
-    return simd::Doubles(simd::Ids(v) & 0x7FFF'FFFF'FFFF'FFFF);
-  };
+  using detail::magnitude;
   const auto from_origin = [&](const Corner& p) noexcept -> Corner {
     return {p.x - rays.origin.x, p.y - rays.origin.y, p.z - rays.origin.z};
   };
   const Corner a = from_origin(triangles.a), b = from_origin(triangles.b), c = from_origin(triangles.c);
 
-  // planes through the origin and an edge, and the bound below which a side is in doubt: |e||s| in
-  // the 1-norm bounds each sum of products, which is at most seven roundings off
-  struct Planes {
-    simd::Doubles x, y, z, doubt;
-  };
-  const simd::Doubles tolerance = simd::Doubles{} + 4 * unit * rays.direction_length;
-  const auto planes = [&](const Corner& from, const Corner& to) noexcept -> Planes {
-    const simd::Doubles ex = to.x - from.x, ey = to.y - from.y, ez = to.z - from.z;
-    const simd::Doubles sx = to.x + from.x, sy = to.y + from.y, sz = to.z + from.z;
-    return {
-        ey * sz - ez * sy, ez * sx - ex * sz, ex * sy - ey * sx,
-        (magnitude(ex) + magnitude(ey) + magnitude(ez)) * (magnitude(sx) + magnitude(sy) + magnitude(sz)) * tolerance};
-  };
-  [[maybe_unused]] Planes ab, bc, ca;
+  [[maybe_unused]] detail::EdgePlanes ab, bc, ca;
   unsigned candidates = (1U << primitives.size()) - 1;
 
   // no ray is inside where all pass one plane on its right and one on its left; once more rounding
-  const auto most = [&](const Planes& p) noexcept {
+  const auto most = [&](const detail::EdgePlanes& p) noexcept {
     return simd::max(p.x * rays.direction_min(0), p.x * rays.direction_max(0)) +
            simd::max(p.y * rays.direction_min(1), p.y * rays.direction_max(1)) +
            simd::max(p.z * rays.direction_min(2), p.z * rays.direction_max(2));
   };
-  const auto least = [&](const Planes& p) noexcept {
+  const auto least = [&](const detail::EdgePlanes& p) noexcept {
     return simd::min(p.x * rays.direction_min(0), p.x * rays.direction_max(0)) +
            simd::min(p.y * rays.direction_min(1), p.y * rays.direction_max(1)) +
            simd::min(p.z * rays.direction_min(2), p.z * rays.direction_max(2));
   };
-  if (!single || certain == 0) {
-    ab = planes(a, b);
-    bc = planes(b, c);
-    ca = planes(c, a);
-    simd::Mask may_meet;
-    if constexpr (single) {
-      const Vec3 d = rays.direction(0);
-      const auto side = [&](const Planes& p) noexcept { return simd::Doubles(d.x * p.x + d.y * p.y + d.z * p.z); };
-      const simd::Doubles u = side(ab), v = side(bc), w = side(ca);
-      may_meet = ((u >= -ab.doubt) & (v >= -bc.doubt) & (w >= -ca.doubt)) |
-                 ((u <= ab.doubt) & (v <= bc.doubt) & (w <= ca.doubt));
-    } else {
-      may_meet = ((most(ab) >= -4 * ab.doubt) & (most(bc) >= -4 * bc.doubt) & (most(ca) >= -4 * ca.doubt)) |
-                 ((least(ab) <= 4 * ab.doubt) & (least(bc) <= 4 * bc.doubt) & (least(ca) <= 4 * ca.doubt));
-    }
-    candidates &= simd::bits(may_meet);
+  if constexpr (single) {
+    candidates &= certain != 0 ? certain : detail::on_one_side(triangles, rays);
   } else {
-    candidates &= certain;
+    ab = detail::EdgePlanes(a, b, rays.direction_length);
+    bc = detail::EdgePlanes(b, c, rays.direction_length);
+    ca = detail::EdgePlanes(c, a, rays.direction_length);
+    candidates &= simd::bits(((most(ab) >= -4 * ab.doubt) & (most(bc) >= -4 * bc.doubt) & (most(ca) >= -4 * ca.doubt)) |
+                             ((least(ab) <= 4 * ab.doubt) & (least(bc) <= 4 * bc.doubt) & (least(ca) <= 4 * ca.doubt)));
   }
   if (candidates == 0) return;
 
@@ -188,13 +216,14 @@ template <class Rays, class Hits, class Solid = detail::SolidEverywhere>
     return {{low.x - by, low.y - by, low.z - by}, {high.x + by, high.y + by, high.z + by}, margin};
   };
   const auto crossings = [&](const Corner& d, const simd::Doubles& offset, const simd::Doubles& slope,
-                             const Walls& inner, const auto& box, simd::Mask& inside) noexcept {
+                             const Walls& inner, const auto& box, simd::Mask& inside, unsigned lanes) noexcept {
     const simd::Doubles at = offset / slope;
     const auto within = [&](simd::Doubles Corner::*axis) noexcept {
       const simd::Doubles place = at * (d.*axis);
       return simd::Mask((place >= inner.low.*axis) & (place <= inner.high.*axis));
     };
-    if (simd::bits(inside & ~(within(&Corner::x) & within(&Corner::y) & within(&Corner::z))) == 0) [[likely]]
+    const simd::Mask outside = inside & ~(within(&Corner::x) & within(&Corner::y) & within(&Corner::z));
+    if ((simd::bits(outside) & lanes) == 0) [[likely]]
       return at;
     const Walls outer = widened(box(), 1);
     simd::Doubles exit = simd::Doubles{} + detail::infinity, entry = -exit;
@@ -212,11 +241,11 @@ template <class Rays, class Hits, class Solid = detail::SolidEverywhere>
   };
   if constexpr (single) {
     const Vec3 d = rays.direction(0);
-    const Corner along{simd::Doubles{} + d.x, simd::Doubles{} + d.y, simd::Doubles{} + d.z};
+    const Corner along{d.x - simd::Doubles{}, d.y - simd::Doubles{}, d.z - simd::Doubles{}};
     const simd::Doubles slope = along.x * normals.x + along.y * normals.y + along.z * normals.z;
     simd::Mask hit = slope * slope > grazing;
     const simd::Doubles at = crossings(
-        along, offsets, slope, widened(walls, 0.5), [&] { return walls; }, hit);
+        along, offsets, slope, widened(walls, 0.5), [&] { return walls; }, hit, candidates);
     hit &= at > rays.near;
     for (candidates &= simd::bits(hit); candidates != 0; candidates &= candidates - 1) {
       const auto t = static_cast<std::size_t>(std::countr_zero(candidates));
@@ -255,7 +284,7 @@ template <class Rays, class Hits, class Solid = detail::SolidEverywhere>
 
         const simd::Doubles slope = d.x * normals.x[t] + d.y * normals.y[t] + d.z * normals.z[t];
         inside &= slope * slope > grazing[t];
-        const simd::Doubles at = crossings(d, simd::Doubles{} + offsets[t], slope, inner, of_one, inside);
+        const simd::Doubles at = crossings(d, simd::Doubles{} + offsets[t], slope, inner, of_one, inside, ~0U);
 
         const simd::Doubles best = simd::load<simd::Doubles>(nearest.range[j]);
         const simd::Ids best_id = simd::load<simd::Ids>(nearest.id[j]),

@@ -168,82 +168,113 @@ class RayInterval {
 
   /// Of the only ray of a bundle. `bounds` of the accelerator; its boxes are relative to `centre`.
   RayInterval(const auto& ray, const Box& bounds, const Vec3& centre) noexcept {
-    using Axes = simd::Vec4<double>;
-    const auto axes = [](const Vec3& v) noexcept { return Axes(v.x, v.y, v.z); };
-    const Axes direction = axes(ray.direction(0)), origin = axes(ray.origin);
-    const Axes low = axes(bounds.min), high = axes(bounds.max), o = origin - axes(centre);
-    // margin as for a bundle, for the same reasons
-    const Axes farthest = simd::max(simd::max(magnitude(low), magnitude(high)), magnitude(origin));
-    const double scale = std::max(std::max(farthest[0], farthest[1]), farthest[2]);
-    const Axes slack(64 * std::numeric_limits<double>::epsilon() * scale);
-    const Axes margin = slack + (magnitude(o) + (high - low)) * Axes(tolerance / 2);
-    const Axes outwards = margin * sense(direction), least(min_speed * ray.direction_length);
-    const Axes slowness = sense(direction) / simd::max(magnitude(direction), least);
-    const auto per = (slowness * Axes(1 - tolerance)).template as<Real>();
+    using Axes = simd::Vec4<Real>;
+    const auto axes = [](const Vec3& v) noexcept { return simd::Vec4<double>(v.x, v.y, v.z); };
+    const auto middle = axes(centre), from_middle = axes(ray.origin) - middle, toward = axes(ray.direction(0));
+    const Axes o = from_middle.template as<Real>(), direction = toward.template as<Real>();
+    const Axes distance = magnitude(o) + (axes(bounds.max) - axes(bounds.min)).template as<Real>();
+    // margin of primitive tests, as for a bundle, and of the roundings of `clip`
+    const Axes farthest = distance + magnitude(middle.template as<Real>());
+    const Real scale = std::max(std::max(farthest[0], farthest[1]), farthest[2]);
+    const Axes margin = Axes(static_cast<Real>(64 * std::numeric_limits<double>::epsilon()) * scale) +
+                        distance * Axes(static_cast<Real>(tolerance));
+    const Axes least(static_cast<Real>(min_speed * ray.direction_length));
+    const Axes slowness = Axes(1) / simd::max(magnitude(direction), least), per = with_sign(slowness, direction);
+    const Axes start = o * per, start_in = margin * slowness + start, start_out = margin * slowness - start;
     simd::store(per, maps_.per[0]);
-    simd::store((Axes(0) - (o + outwards)).template as<Real>() * per, maps_.start[0][0]);
-    simd::store((outwards - o).template as<Real>() * per, maps_.start[1][0]);
-    for (std::size_t k = 0; k < 3; ++k)
-      maps_.entry_wall[k] = k * wall_bytes + (std::signbit(direction[k]) ? 3 * wall_bytes : 0);
-    const Axes both = o + direction;
-    const bool is_valid = std::isfinite(both[0] + both[1] + both[2]);  // infinity and NaN miss
-    maps_.near = is_valid ? static_cast<Real>(ray.near * (1 - tolerance)) + Real{0}
-                          : std::numeric_limits<Real>::infinity();  // no -0
+    for (std::size_t k = 0; k < 3; ++k) {
+      maps_.start_in[k] = start_in[k] - Packet{};
+      maps_.start_out[k] = start_out[k] - Packet{};
+    }
+    maps_.walls = walls_by_signs[signs(direction) & 7];
+    const auto both = from_middle + toward;
+    const double valid = 0 * (both[0] + both[1] + both[2]);  // NaN for infinity and NaN: such rays miss
+    maps_.near = (static_cast<Real>(ray.near * (1 - tolerance) + valid) + Real{0}) - Packet{};  // no -0
   }
 
   [[nodiscard]] Real limit(const auto&, const auto& nearest) const noexcept {
-    return static_cast<Real>(std::min(nearest.limit_of(0) * (1 + tolerance), max_limit));
+    return std::min(static_cast<Real>(nearest.limit_of(0) * (1 + tolerance)), max_limit);
+  }
+
+  /// Copy for a loop without calls, by members: the compiler keeps it in registers, where copies
+  /// that live across a call are read from the stack at each node.
+  [[nodiscard, gnu::always_inline]] RayInterval loaded() const noexcept {
+    const RayInterval* from = this;
+    asm("" : "+r"(from));
+    RayInterval copy;
+    for (std::size_t k = 0; k < 3; ++k) {
+      copy.maps_.start_in[k] = from->maps_.start_in[k];
+      copy.maps_.start_out[k] = from->maps_.start_out[k];
+      copy.maps_.per[k] = from->maps_.per[k];
+      copy.maps_.walls.entry[k] = from->maps_.walls.entry[k];
+      copy.maps_.walls.exit[k] = from->maps_.walls.exit[k];
+    }
+    copy.maps_.near = from->maps_.near;
+    return copy;
   }
 
   /// Bit mask of the boxes that the ray may be inside of at a range up to `limit`, and their keys.
-  // always inlined into the traversal, which saves 20 instructions a node
+  // always inlined into the traversal
   [[nodiscard, gnu::always_inline]] unsigned inside(const Box8<Real>& boxes, Real limit, Keys& keys) const noexcept {
-    const Maps* maps = &maps_;
-    asm("" : "+r"(maps));  // numbers for all lanes are loaded here: there are too few registers to keep them
     unsigned met = 0;
     for (std::size_t first = 0; first < 8; first += lanes) {
-      Packet entry = maps->near - Packet{}, exit = limit - Packet{};
-      clip(0, boxes, first, *maps, entry, exit);
-      clip(1, boxes, first, *maps, entry, exit);
-      clip(2, boxes, first, *maps, entry, exit);
+      Packet entry = maps_.near, exit = limit - Packet{};
+      clip(0, boxes, first, maps_, entry, exit);
+      clip(1, boxes, first, maps_, entry, exit);
+      clip(2, boxes, first, maps_, entry, exit);
       simd::store(KeyPacket(entry) & ~Key{7}, keys[first]);
-      met |= simd::bits(entry <= exit * static_cast<Real>(1 + 3 * tolerance)) << first;
+      met |= simd::bits(entry <= exit) << first;
     }
     return met;
   }
 
  private:
+  RayInterval() noexcept {}  // leaves the maps unset
+
   using Packet = simd::Packet<Real>;
   static constexpr std::size_t lanes = simd::packet_size<Real>;
   using KeyPacket = simd::Vec<Key, lanes>;
 
   static constexpr double tolerance = 8 * static_cast<double>(std::numeric_limits<Real>::epsilon());
-  /// Greatest limit; finite with the tolerance, so that a box that is infinitely far is not hit.
-  static constexpr double max_limit = (1 - 4 * tolerance) * std::numeric_limits<Real>::max();
+  /// Greatest limit: a box that is infinitely far is not hit.
+  static constexpr Real max_limit = std::numeric_limits<Real>::max();
   /// Least speed along an axis, relative to the direction's length. Slower rays count as this fast:
   /// from the margin on, they leave a box so late that no hit lies beyond.
   static constexpr double min_speed = 1e-18;
   static constexpr std::size_t wall_bytes = sizeof(Box8<Real>::min[0]);
 
+  /// Bytes of the walls where boxes are entered and left, by axis.
+  struct WallBytes {
+    std::array<std::size_t, 3> entry, exit;
+  };
+  /// By the sign bits of a direction.
+  static constexpr std::array<WallBytes, 8> walls_by_signs = [] {
+    std::array<WallBytes, 8> all{};
+    for (std::size_t signs = 0; signs < 8; ++signs)
+      for (std::size_t k = 0; k < 3; ++k) {
+        all[signs].entry[k] = (k + 3 * (signs >> k & 1)) * wall_bytes;
+        all[signs].exit[k] = (2 * k + 3) * wall_bytes - all[signs].entry[k];
+      }
+    return all;
+  }();
+
   /// Linear maps from a wall's coordinate on each axis to range, with margins: entry, exit.
   struct Maps {
-    alignas(4 * sizeof(Real)) Real per[4], start[2][4];
-    Real near;
-    std::size_t entry_wall[3];  ///< byte of the walls where boxes are entered
+    Packet start_in[3], start_out[3], near;
+    Real per[4];
+    WallBytes walls;
   };
 
   /// Cuts the intervals of consecutive boxes down to what lies between their walls on axis k. A
-  /// wall's position errs by two roundings of the distance to the origin, plus two of half the
-  /// bounds; the range, by two. `per` is too small, so that the entry is not late.
+  /// wall's range errs by seven roundings, as if the wall were moved by half an epsilon of its
+  /// greatest distance for each: the margins, of 16, let no entry be late, and no exit early.
   [[gnu::always_inline]] void clip(std::size_t k, const Box8<Real>& boxes, std::size_t first, const Maps& maps,
                                    Packet& entry, Packet& exit) const noexcept {
     const char* const walls = reinterpret_cast<const char*>(&boxes.min[0][first]);
-    const auto range_of = [&](std::size_t byte, std::size_t side) noexcept -> Packet {
-      return simd::load<Packet>(walls[byte]) * maps.per[k] + maps.start[side][k];
-    };
+    const auto wall = [&](std::size_t byte) noexcept { return simd::load<Packet>(walls[byte]); };
     // NaN fails every comparison
-    entry = simd::max(range_of(maps.entry_wall[k], 0), entry);
-    exit = simd::min(range_of(3 * wall_bytes + 2 * k * wall_bytes - maps.entry_wall[k], 1), exit);
+    entry = simd::max(Packet(wall(maps.walls.entry[k]) * maps.per[k] - maps.start_in[k]), entry);
+    exit = simd::min(Packet(wall(maps.walls.exit[k]) * maps.per[k] + maps.start_out[k]), exit);
   }
 
   Maps maps_;

@@ -53,10 +53,12 @@ class LineTest {
   [[nodiscard, gnu::noinline]] double doubt() const noexcept {
     // `intersect` lets a side be in doubt by 17 roundings of 4 reach^2 times the direction's
     // length, and this test adds 12 of its 1-norm
-    const Vec3 reaches = max(abs(bounds_->min - ray_->origin), abs(bounds_->max - ray_->origin)),
-               speeds = abs(ray_->toward);
-    const double reach = reaches.x + reaches.y + reaches.z,
-                 speed = ray_->direction_length + speeds.x + speeds.y + speeds.z;
+    using Axes = simd::Vec4<double>;
+    const auto axes = [](const Vec3& v) noexcept { return Axes(v.x, v.y, v.z); };
+    const auto sum = [](const Axes& v) noexcept { return v[0] + v[1] + v[2]; };
+    const Axes origin = axes(ray_->origin);
+    const double reach = sum(max(magnitude(axes(bounds_->min) - origin), magnitude(axes(bounds_->max) - origin))),
+                 speed = ray_->direction_length + sum(magnitude(axes(ray_->toward)));
     const double doubt = 32 * std::numeric_limits<double>::epsilon() * reach * reach * speed + tiny;
     return doubt < huge ? doubt : detail::infinity;
   }
