@@ -1,8 +1,9 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
 
-// Surveys of one scene, as itself and as one of several types of maps, for `any_target.sh` to count their instructions:
-// `bench_any_target` runs each function below once. Prints a sum over the echoes of each; the two are equal.
+// Surveys of one scene, as itself and as one of several types of maps, for `count.sh any_target target 2000` to count
+// their instructions: `bench_any_target` runs each function below once. Prints a sum over the echoes of each; the two
+// are equal.
 
 #include <cstdio>
 

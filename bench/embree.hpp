@@ -23,6 +23,17 @@
 /// Embree 3 on the benchmarks' meshes and rays, for comparison. Source: Wald, Woop, Benthin, Johnson & Ernst 2014.
 namespace bench {
 
+/// Name and version of the library that is in use, such as "Embree 3.13.5".
+[[nodiscard]] inline std::string embree_name() {
+  const RTCDevice device = rtcNewDevice("threads=1");
+  std::string name = "Embree";
+  for (const RTCDeviceProperty part :
+       {RTC_DEVICE_PROPERTY_VERSION_MAJOR, RTC_DEVICE_PROPERTY_VERSION_MINOR, RTC_DEVICE_PROPERTY_VERSION_PATCH})
+    name += (name == "Embree" ? " " : ".") + std::to_string(rtcGetDeviceProperty(device, part));
+  rtcReleaseDevice(device);
+  return name;
+}
+
 /// A mesh built by Embree, on `threads` threads.
 class EmbreeMesh {
  public:
@@ -110,6 +121,17 @@ class EmbreeRays {
   double sum_of_ranges(const EmbreeMesh& mesh) noexcept {
     double sum = 0;
     trace(mesh, [&](float range, bool met) noexcept { sum += met ? double{range} : 0; });
+    return sum;
+  }
+
+  /// Number of rays that meet anything.
+  double occluded(const EmbreeMesh& mesh) noexcept requires(Width == 1) {
+    double sum = 0;
+    for (const RTCRay& packet : packets_) {
+      RTCRay ray = packet;
+      rtcOccluded1(mesh.scene(), &context_, &ray);
+      sum += ray.tfar < 0 ? 1 : 0;
+    }
     return sum;
   }
 

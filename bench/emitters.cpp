@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
 
-// Surveys by devices of one divergence and of two that alternate, for `emitters.sh` to count their instructions:
-// `bench_emitters` runs each function below once. The pulses of the alternating device are, in turn, those of the other
-// two. Prints a sum over the echoes of each.
+// Surveys by devices of one divergence and of two that alternate, for `count.sh emitters emitters 2000` to count their
+// instructions: `bench_emitters` runs each function below once. The pulses of the alternating device are, in turn,
+// those of the other two. Prints a sum over the echoes of each.
 
 #include <cstdio>
 #include <vector>

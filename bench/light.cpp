@@ -1,8 +1,8 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
 
-// Pulses from all along a car's survey of the town, for `light.sh` to count its instructions: `bench_light` runs each
-// function below once. Prints sums of ranges, and the share of the light that hits glass.
+// Pulses from all along a car's survey of the town, for `count.sh light light 3000` to count its instructions:
+// `bench_light` runs each function below once. Prints sums of ranges, and the share of the light that hits glass.
 
 #include <cstdio>
 #include <memory>

@@ -2,16 +2,14 @@
 // SPDX-License-Identifier: MIT
 
 // Ten robots with a VLP-16 each, ten turns a second, in one street with 20 moving cars: the loop of
-// examples/robot_loop.cpp, step by step at 60 Hz. Prints how many times faster than real time it is: the median over
-// ten seconds of the drive, and the least of them. Usage: bench_robots [ROBOTS [THREADS]]
+// examples/robot_loop.cpp, step by step at 60 Hz, on all threads. How many times faster than real time it is: the
+// median over ten seconds of the drive, and the least of them; with the street in its parts, and as one mesh.
 
 #include <algorithm>
 #include <atomic>
 #include <cstddef>
-#include <cstdio>
-#include <cstdlib>
-#include <memory>
-#include <string_view>
+#include <cstdint>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -23,29 +21,16 @@
 
 #include "../examples/traffic.hpp"
 #include "report.hpp"
+#include "surveys.hpp"
 
-using namespace pulsecast;
+using namespace bench;
 
-/// The parts of a scene as one mesh, without their materials and objects.
-street::Scene flat(const street::Scene& scene) {
-  MeshData all;
-  for (const street::Scene::Part& part : scene.parts())
-    for (std::size_t i = 0; i < part.geometry->size(); ++i) {
-      const Triangle t = part.geometry->triangle(static_cast<PrimitiveIndex>(i));
-      const auto first = static_cast<std::uint32_t>(all.vertices.size());
-      for (const Vec3& corner : {t.a, t.b, t.c}) all.vertices.push_back(part.placement.point(corner));
-      all.triangles.push_back({first, first + 1, first + 2});
-    }
-  return street::Scene({{std::make_shared<const street::Mesh>(all), material_table(), {}, 0, "street", {}}});
-}
+namespace {
 
-int main(int argc, char** argv) {
-  const bool is_flat = argc > 1 && std::string_view(argv[1]) == "--flat";
-  argc -= is_flat ? 1 : 0;
-  argv += is_flat ? 1 : 0;
-  const std::size_t count = argc > 1 ? std::strtoul(argv[1], nullptr, 10) : 10, seconds = 10, rate = 60;
-  const unsigned threads = argc > 2 ? static_cast<unsigned>(std::strtoul(argv[2], nullptr, 10)) : 0;
-  const street::Scene town = is_flat ? flat(street::scene(1)) : street::scene(1);
+constexpr std::size_t count = 10, seconds = 10, rate = 60;
+
+void drive(Report& report, const std::string& name, const street::Scene& town) {
+  if (!report.wanted(name)) return;
   std::vector<traffic::Vehicle> cars = traffic::cars(20, street::Dice(1, 7)), robots(count);
   std::vector<Placement> placements;
   street::Scene moving = traffic::scene_of(cars), unused = moving;
@@ -67,11 +52,11 @@ int main(int argc, char** argv) {
         io::PointSettings{.sensor = pose, .axes = io::PointAxes::forward_left_up, .rings = sensor.rings()});
   }
 
-  ThreadPool pool(threads);
-  bench::Times times;
+  ThreadPool pool;
+  Times times;
   std::size_t points = 0;
   for (std::size_t step = 0; step < seconds * rate; ++step) {
-    const double began = bench::wall_seconds();
+    const double began = wall_seconds();
     const Tick start = Tick::of(step, static_cast<double>(rate)), end = Tick::of(step + 1, static_cast<double>(rate));
     for (traffic::Vehicle& car : cars) car.begin_step(start.seconds());
     traffic::place(cars, 0.5 * (start.seconds() + end.seconds()), placements);
@@ -88,9 +73,19 @@ int main(int argc, char** argv) {
     pool.for_each(count, scan);
     points += found;
     if (step % rate == 0) times.push_back(0);
-    times.back() += bench::wall_seconds() - began;
+    times.back() += wall_seconds() - began;
   }
-  std::printf("%zu robots, %u threads, %zu points a second: %.2f times real time, the slowest second %.2f times\n",
-              count, pool.threads(), points / seconds, 1 / bench::median(times),
-              1 / *std::max_element(times.begin(), times.end()));
+  report.row(name, {{"times real time", 1 / median(times)},
+                    {"slowest second", 1 / *std::max_element(times.begin(), times.end())},
+                    {"points/s of the drive", static_cast<double>(points / seconds)}});
+}
+
+}  // namespace
+
+int main(int words_count, char** words) {
+  Report report("robots", words_count, words);
+  report.heading("a drive of " + std::to_string(seconds) + " s");
+  const street::Scene town = street::scene(1);
+  drive(report, "ten VLP-16", town);
+  drive(report, "ten VLP-16, street as one mesh", scene_of(flattened(town)));
 }

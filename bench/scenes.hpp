@@ -199,6 +199,34 @@ class Bundles {
   return all;
 }
 
+/// Single rays of a camera with 128 x 128 pixels, line by line.
+[[nodiscard]] inline Bundles camera_rays(const Vec3& eye, const Vec3& at) {
+  constexpr int pixels = 128;
+  const Vec3 ahead = normalize(at - eye), right = normalize(cross(ahead, axis::up)), up = cross(right, ahead);
+  Bundles all;
+  for (int y = 0; y < pixels; ++y)
+    for (int x = 0; x < pixels; ++x)
+      all.add(bundle_of(
+          {.origin = eye, .direction = normalize(ahead + ((x - 63.5) / 110) * right + ((63.5 - y) / 110) * up)}));
+  return all;
+}
+
+/// Single rays from what others hit towards the sun.
+template <class Shape>
+[[nodiscard]] Bundles shadow_rays(const Shape& shape, const Bundles& rays) {
+  Bundles all;
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    const RayBundle from = rays[i];
+    ClosestHits nearest(from);
+    shape.closest(from, nearest);
+    if (nearest.met(0))
+      all.add(bundle_of({.origin = from.origin + nearest.range[0] * from.direction(0),
+                         .direction = normalize(Vec3{0.5, 0.3, 0.6}),
+                         .near = 1e-3}));
+  }
+  return all;
+}
+
 /// Traces them all; the sum of ranges is there so that no work is left out.
 template <class Shape>
 double sum_of_ranges(const Shape& shape, const Bundles& all) noexcept {
@@ -208,18 +236,6 @@ double sum_of_ranges(const Shape& shape, const Bundles& all) noexcept {
     ClosestHits nearest(rays);
     shape.closest(rays, nearest);
     for (std::size_t j = 0; j < rays.size; ++j) sum += nearest.met(j) ? nearest.range[j] : 0;
-  }
-  return sum;
-}
-
-/// As above, each bundle's first ray alone.
-template <class Shape>
-double sum_of_single_ranges(const Shape& shape, const Bundles& all) noexcept {
-  double sum = 0;
-  for (std::size_t i = 0; i < all.size(); ++i) {
-    ClosestHit nearest(std::numeric_limits<double>::infinity());
-    shape.closest(all.ray(i), nearest);
-    sum += nearest.met(0) ? nearest.range[0] : 0;
   }
   return sum;
 }
@@ -241,16 +257,18 @@ template <class Shape>
   }
   return found;
 }
-/// As above, each bundle's first ray alone.
+/// Hit of one ray by itself: the closest, or any, whose range and number are not known and given as 0.
 template <class Shape>
-[[nodiscard]] std::vector<Answer> single_answers(const Shape& shape, const Bundles& all) {
-  std::vector<Answer> found;
-  for (std::size_t i = 0; i < all.size(); ++i) {
-    ClosestHit nearest(std::numeric_limits<double>::infinity());
-    shape.closest(all.ray(i), nearest);
-    found.push_back({nearest.range[0], nearest.id[0]});
+[[nodiscard]] Answer answer_alone(const Shape& shape, const SingleRayPacket& ray, bool any) noexcept {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  if (any) {
+    AnyHit hit(infinity);
+    shape.closest(ray, hit);
+    return {hit.found ? 0 : infinity, 0};
   }
-  return found;
+  ClosestHit nearest(infinity);
+  shape.closest(ray, nearest);
+  return {nearest.range[0], nearest.id[0]};
 }
 
 }  // namespace bench

@@ -1,14 +1,15 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
 
-// Cost of tracing on one thread: beams and rays a second, by scene, accelerator, precision and subrays a beam, and
-// beside them Embree 3 on the same rays, alternating in the same run. A row is printed only once the accelerator has
-// given the same hits as `Linear`, bit by bit, on a sample; for Embree the share of equal ranges is printed.
+// Cost of tracing on one thread: rays a second of beams and of single rays, by scene and accelerator, and beside them
+// Embree 3 on the same rays, alternating in the same run. A row is printed only once the accelerator has given the same
+// hits as `Linear`, bit by bit, on a sample; for Embree the share of equal ranges is printed.
 //
-// Rows are named scene/subrays/accelerator, with `alone` for a `SingleRayPacket` in place of a bundle: `--only
-// '*/19/Bvh<float>' --only
-// '*/19/Embree*'`. An OBJ file in metres, if one is given, is scanned as a scene of its own. A beam's ratio is to the
-// best of Embree's rows; a single ray's, to the best of `rtcIntersect1`.
+// Rows are named scene/rays/accelerator, as in `--only '*/19/Bvh<float>'`. Rays are beams of 7, 19 and 61 subrays, or
+// single ones: along a scan, of a camera, from there to the sun (`shadow`), or between random places (`incoherent`);
+// those to the sun, and `incoherent any`, end at any hit. An OBJ file in metres, if one is given, is scanned as a scene
+// of its own. A ratio is to the best of Embree's ways for these rays: one by one, or of a beam in packets of 8 or 16,
+// in trees of both build qualities; the robust one of its best with the flag `robust`.
 
 #include <cmath>
 #include <cstddef>
@@ -18,7 +19,6 @@
 #include <functional>
 #include <memory>
 #include <string>
-#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -38,25 +38,38 @@ using namespace bench;
 
 namespace {
 
+/// Rays that are traced together: beams of one size, or single rays.
+struct Group {
+  std::string name;
+  Bundles bundles;
+  std::size_t subrays;       ///< in each
+  std::size_t sampled = 32;  ///< bundles that `Linear` traces, too
+  bool any = false;          ///< the rays end at any hit
+};
+
 /// Something that rays are traced in.
 struct Subject {
   std::string name;
-  std::function<double(const Bundles&)> trace;
-  std::function<std::vector<Answer>(const Bundles&)> answers;
-  bool single = false;  ///< takes single rays only
+  std::function<double(const Group&)> trace;
+  std::function<std::vector<Answer>(const Group&, const Bundles&)> answers;
 };
 
 template <class Shape>
 Subject subject(const std::string& name, std::shared_ptr<const Shape> shape) {
-  return {name, [shape](const Bundles& all) { return sum_of_ranges(*shape, all); },
-          [shape](const Bundles& all) { return bench::answers(*shape, all); }};
-}
-
-/// The same shape, asked by single rays.
-template <class Shape>
-Subject single_subject(const std::string& name, std::shared_ptr<const Shape> shape) {
-  return {name, [shape](const Bundles& all) { return sum_of_single_ranges(*shape, all); },
-          [shape](const Bundles& all) { return single_answers(*shape, all); }, true};
+  return {name,
+          [shape](const Group& group) {
+            if (group.subrays > 1) return sum_of_ranges(*shape, group.bundles);
+            double sum = 0;
+            for (std::size_t i = 0; i < group.bundles.size(); ++i)
+              sum += answer_alone(*shape, group.bundles.ray(i), group.any).range;
+            return sum;
+          },
+          [shape](const Group& group, const Bundles& some) {
+            if (group.subrays > 1) return answers(*shape, some);
+            std::vector<Answer> found;
+            for (std::size_t i = 0; i < some.size(); ++i) found.push_back(answer_alone(*shape, some.ray(i), group.any));
+            return found;
+          }};
 }
 
 struct Course {
@@ -64,50 +77,49 @@ struct Course {
   MeshData mesh;
   Aims aims;
   double divergence;
+  Vec3 eye, at;                                                 ///< place of a camera, and its aim
   std::function<std::shared_ptr<const HeightField>()> field{};  ///< the same ground as one; empty if there is none
-};
-
-/// Rays that are traced together: beams of one size, or rays that have nothing in common.
-struct Group {
-  std::string name;
-  Bundles bundles;
-  std::size_t subrays;  ///< in each
-  std::size_t sampled;  ///< bundles that `Linear` traces, too
 };
 
 std::vector<Group> groups(const Course& course) {
   std::vector<Group> all;
-  for (const std::size_t subrays : {1U, 7U, 19U, 61U})
-    all.push_back(
-        {course.name + "/" + std::to_string(subrays), beams(course.aims, subrays, course.divergence), subrays, 16});
-  all.push_back({course.name + "/incoherent", incoherent_rays(bounds_of(course.mesh), 4 * pulse_count), 1, 64});
+  const auto name = [&](const std::string& rays) { return course.name + "/" + rays; };
+  for (const std::size_t subrays : {7U, 19U, 61U})
+    all.push_back({name(std::to_string(subrays)), beams(course.aims, subrays, course.divergence), subrays, 16});
+  all.push_back({name("scan"), beams(course.aims, 1, course.divergence), 1});
+  all.push_back({name("camera"), camera_rays(course.eye, course.at), 1});
+  all.push_back({name("shadow"), shadow_rays(TriangleMesh<>(course.mesh), all.back().bundles), 1, 32, true});
+  all.push_back({name("incoherent"), incoherent_rays(bounds_of(course.mesh), 4 * pulse_count), 1});
+  all.push_back({name("incoherent any"), all.back().bundles, 1, 32, true});
   return all;
 }
 
 #ifdef PULSECAST_BENCH_EMBREE
 
-struct EmbreeSubject {
-  std::string name;
+/// A tree of Embree's.
+struct Rival {
   std::unique_ptr<EmbreeMesh> mesh;
+  bool robust;
 };
 
+/// Adds the rays of a group, in packets of a width, in all trees.
 template <std::size_t Width>
-void add_embree(const Report& report, const Group& group, const std::vector<EmbreeSubject>& subjects,
-                std::vector<std::string>& names, std::vector<std::function<void()>>& works, double& sum) {
-  if (Width > 1 && group.subrays == 1) return;  // there is no packet in a single ray
+void add_rivals(const Group& group, const std::vector<Rival>& rivals, std::vector<std::function<void()>>& works,
+                double& sum) {
   const auto rays = std::make_shared<EmbreeRays<Width>>(group.bundles, group.subrays > 1);
-  for (const EmbreeSubject& subject : subjects) {
-    const std::string name = group.name + "/" + subject.name + " " + std::to_string(Width);
-    if (!subject.mesh || !report.wanted(name)) continue;
-    names.push_back(name);
-    works.emplace_back([rays, mesh = subject.mesh.get(), &sum] { sum += rays->sum_of_ranges(*mesh); });
-  }
+  for (const Rival& rival : rivals)
+    works.emplace_back([rays, mesh = rival.mesh.get(), &sum, any = group.any] {
+      if constexpr (Width == 1)
+        if (any) return void(sum += rays->occluded(*mesh));
+      sum += rays->sum_of_ranges(*mesh);
+    });
 }
 
-/// Number of Embree's ranges that equal ours up to single precision.
-void print_agreement(const Report& report, const Group& group, const EmbreeSubject& embree, const Subject& ours) {
-  const auto theirs = EmbreeRays<1>(group.bundles, true).ranges(*embree.mesh);
-  const auto expected = ours.answers(group.bundles);
+/// Shares of the rays that meet something, and of Embree's ranges that equal ours up to single precision.
+Figures agreement(Group group, const EmbreeMesh& embree, const Subject& ours) {
+  group.any = false;
+  const auto theirs = EmbreeRays<1>(group.bundles, true).ranges(embree);
+  const auto expected = ours.answers(group, group.bundles);
   std::size_t same = 0, met = 0;
   for (std::size_t i = 0; i < theirs.size(); ++i) {
     const bool both = std::isfinite(theirs[i]) && std::isfinite(expected[i].range);
@@ -115,15 +127,12 @@ void print_agreement(const Report& report, const Group& group, const EmbreeSubje
     same += both ? std::fabs(theirs[i] - expected[i].range) < 1e-5 * expected[i].range + 1e-3
                  : std::isfinite(theirs[i]) == std::isfinite(expected[i].range);
   }
-  const double all = static_cast<double>(theirs.size()), share = static_cast<double>(same) / all;
-  char note[128];
-  std::snprintf(note, sizeof note, "%.1f %% of %zu rays meet something; Embree gives the same range for %.3f %%",
-                100 * static_cast<double>(met) / all, theirs.size(), 100 * share);
-  report.note(note);
-  if (share < 0.98) {
-    std::printf("these are not the same rays\n");
+  const double percent = 100 / static_cast<double>(theirs.size());
+  if (percent * static_cast<double>(same) < 98) {
+    std::printf("%s: these are not the same rays\n", group.name.c_str());
     std::exit(1);
   }
+  return {{"% hit", percent * static_cast<double>(met)}, {"% equal", percent * static_cast<double>(same)}};
 }
 
 #endif
@@ -132,22 +141,22 @@ class Races {
  public:
   Races(Report& report, const Course& course) : report_(report), course_(course), groups_(groups(course)) {
     add<Bvh<float>>("Bvh<float>");
-    if (wanted("Bvh<float> alone"))
-      subjects_.push_back(single_subject("Bvh<float> alone", std::make_shared<const TriangleMesh<>>(course_.mesh)));
     add<Bvh<double>>("Bvh<double>");
     add<KdTree<float>>("KdTree<float>");
     add<KdTree<double>>("KdTree<double>");
     if (course.field && wanted("HeightField")) subjects_.push_back(subject("HeightField", course.field()));
+    if (subjects_.empty()) return;
+    linear_ = subject("Linear", std::make_shared<const TriangleMesh<Linear<>>>(course.mesh));
 #ifdef PULSECAST_BENCH_EMBREE
-    for (const auto& [name, quality, robust] : {std::tuple{"Embree", RTC_BUILD_QUALITY_MEDIUM, false},
-                                                std::tuple{"Embree high", RTC_BUILD_QUALITY_HIGH, false},
-                                                std::tuple{"Embree high robust", RTC_BUILD_QUALITY_HIGH, true}})
-      if (wanted(std::string(name) + " 1") || wanted(std::string(name) + " 8") || wanted(std::string(name) + " 16"))
-        embree_.push_back({name, std::make_unique<EmbreeMesh>(course.mesh, quality, robust)});
+    for (const bool robust : {false, true})
+      for (const RTCBuildQuality quality : {RTC_BUILD_QUALITY_MEDIUM, RTC_BUILD_QUALITY_HIGH})
+        rivals_.push_back({std::make_unique<EmbreeMesh>(course.mesh, quality, robust), robust});
 #endif
   }
 
   void run() {
+    report_.heading(course_.name + ": " + std::to_string(course_.mesh.triangles.size()) + " triangles, " +
+                    std::to_string(pulse_count) + " beams");
     for (const Group& group : groups_) run(group);
   }
 
@@ -161,10 +170,8 @@ class Races {
     if (wanted(name)) subjects_.push_back(subject(name, std::make_shared<const TriangleMesh<Index>>(course_.mesh)));
   }
 
-  void check(const Group& group, const Subject& subject, std::vector<Answer>& expected, const Bundles& some) {
-    if (!linear_) linear_ = std::make_unique<TriangleMesh<Linear<>>>(course_.mesh);
-    if (expected.empty()) expected = bench::answers(*linear_, some);
-    auto found = subject.answers(some);
+  void check(const Group& group, const Subject& subject, const std::vector<Answer>& expected, const Bundles& some) {
+    auto found = subject.answers(group, some);
     if (subject.name == "HeightField")  // its triangles have other numbers
       for (std::size_t i = 0; i < found.size(); ++i)
         found[i].id = found[i].range == expected[i].range ? expected[i].id : found[i].id;
@@ -178,40 +185,40 @@ class Races {
     std::vector<std::string> names;
     std::vector<std::function<void()>> works;
     double sum = 0;
-    std::vector<Answer> expected;
     const Bundles some = group.bundles.sample(group.sampled);
-    [[maybe_unused]] const Subject* checked = nullptr;
+    std::vector<Answer> expected;
     for (const Subject& subject : subjects_) {
       const std::string name = group.name + "/" + subject.name;
-      if (!report_.wanted(name) || (subject.single && group.subrays > 1)) continue;
+      if (!report_.wanted(name)) continue;
+      if (expected.empty()) expected = linear_.answers(group, some);
       check(group, subject, expected, some);
-      checked = &subject;
       names.push_back(name);
-      works.emplace_back([&] { sum += subject.trace(group.bundles); });
+      works.emplace_back([&] { sum += subject.trace(group); });
     }
-    const std::size_t ours = works.size();
-#ifdef PULSECAST_BENCH_EMBREE
-    add_embree<1>(report_, group, embree_, names, works, sum);
-    add_embree<8>(report_, group, embree_, names, works, sum);
-    add_embree<16>(report_, group, embree_, names, works, sum);
-#endif
     if (works.empty()) return;
-    report_.heading(group.name + ": " + std::to_string(course_.mesh.triangles.size()) + " triangles, " +
-                    std::to_string(group.bundles.size()) + " bundles of " + std::to_string(group.subrays));
 #ifdef PULSECAST_BENCH_EMBREE
-    if (checked && !embree_.empty()) print_agreement(report_, group, embree_.back(), *checked);
+    add_rivals<1>(group, rivals_, works, sum);
+    if (group.subrays > 1) add_rivals<8>(group, rivals_, works, sum);
+    if (group.subrays > 1) add_rivals<16>(group, rivals_, works, sum);
 #endif
     const std::vector<Times> times = report_.by_turns(works);
     keep(sum);
-    std::size_t best = ours;  // of Embree's
-    for (std::size_t i = ours; i < times.size(); ++i)
-      if (median(times[i]) < median(times[best])) best = i;
-    for (std::size_t i = 0; i < times.size(); ++i) {
-      const double per_second = static_cast<double>(group.bundles.size()) / median(times[i]) / 1e6;
-      Figures figures;
-      if (group.subrays > 1) figures.emplace_back("Mbeams/s", per_second);
-      figures.emplace_back("Mrays/s", per_second * static_cast<double>(group.subrays));
-      if (best < times.size()) figures.emplace_back("of Embree's best", speed_ratio(times[i], times[best]));
+    const double rays = static_cast<double>(group.bundles.size() * group.subrays);
+    for (std::size_t i = 0; i < names.size(); ++i) {
+      Figures figures{{"Mrays/s", rays / median(times[i]) / 1e6}};
+#ifdef PULSECAST_BENCH_EMBREE
+      const std::string embree = embree_name();
+      for (const bool robust : {false, true}) {
+        const Times* best = nullptr;
+        for (std::size_t k = names.size(); k < times.size(); ++k)
+          if (rivals_[(k - names.size()) % rivals_.size()].robust == robust &&
+              (!best || median(times[k]) < median(*best)))
+            best = &times[k];
+        if (!robust) figures.emplace_back(embree, rays / median(*best) / 1e6);
+        figures.emplace_back("of " + embree + (robust ? " robust" : ""), speed_ratio(times[i], *best));
+      }
+      for (const auto& share : agreement(group, *rivals_.back().mesh, subjects_.front())) figures.push_back(share);
+#endif
       report_.row(names[i], figures);
     }
   }
@@ -220,9 +227,9 @@ class Races {
   const Course& course_;
   std::vector<Group> groups_;
   std::vector<Subject> subjects_;
-  std::unique_ptr<TriangleMesh<Linear<>>> linear_;
+  Subject linear_;
 #ifdef PULSECAST_BENCH_EMBREE
-  std::vector<EmbreeSubject> embree_;
+  std::vector<Rival> rivals_;
 #endif
 };
 
@@ -233,13 +240,15 @@ int main(int count, char** words) {
   const auto race = [&](const Course& course) { Races(report, course).run(); };
   const auto beside = [&](const std::string& name, MeshData mesh) {
     const Box box = bounds_of(mesh);
-    race({name, std::move(mesh), from_a_tripod(box), 0.3_mrad});
+    race({name, std::move(mesh), from_a_tripod(box), 0.3_mrad, box.centre() + Vec3{14, 3, -2}, box.centre()});
   };
   const Raster ground = hills(866);
-  race(
-      {"hills", ground.mesh(), from_the_air(), 0.25_mrad, [&] { return std::make_shared<const HeightField>(ground); }});
+  race({"hills", ground.mesh(), from_the_air(), 0.25_mrad, {-300, -300, 120}, {0, 0, 0}, [&] {
+          return std::make_shared<const HeightField>(ground);
+        }});
   beside("tree", tree());
   for (const std::string& file : report.files())
     beside(std::filesystem::path(file).stem().string() + ".obj", io::read_obj(file).mesh);
-  race({"street", flattened(street::scene(1)), from_a_car(), 0.3_mrad});
+  race({"street", flattened(street::scene(1)), from_a_car(), 0.3_mrad, street::on({1.2, -40}) + Vec3{0, 0, 2},
+        street::on({1.2, 20}) + Vec3{0, 0, 1}});
 }

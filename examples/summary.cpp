@@ -19,7 +19,7 @@ void ProgressLine::operator()(const pulsecast::Progress& progress) {
   const double done = static_cast<double>(progress.done), total = static_cast<double>(progress.total),
                rate = done / progress.seconds;
   std::cerr << (terminal_ ? "\r" : "") << std::fixed << std::setprecision(0) << std::setw(4) << 100 * done / total
-            << " %  " << std::setprecision(2) << rate / 1e6 << " million pulses/s  " << std::setprecision(0)
+            << " %  " << std::setprecision(2) << rate / 1e6 << " million pulse slots/s  " << std::setprecision(0)
             << (total - done) / rate << " s left   " << (terminal_ && !last ? "" : "\n") << std::flush;
 }
 
@@ -34,11 +34,11 @@ void print(const pulsecast::RunSummary& run) {
   std::cout << std::fixed << std::setprecision(2);
   line("pulses", run.pulses(), "");
   line("echoes", run.echoes, "");
-  line("missed", run.count(missed), "pulses");
+  line("missed", run.count(missed), "pulses, which hit nothing");
   if (run.count(out_of_range) > 0) line("out of range", run.count(out_of_range), "pulses");
   if (run.count(absorbed) > 0) line("absorbed", run.count(absorbed), "pulses");
   if (run.count(below_threshold) > 0) line("too weak", run.count(below_threshold), "pulses");
   line("time", run.seconds, "s");
-  if (run.pulses() > 0) line("speed", static_cast<double>(run.rays) / run.seconds / 1e6, "million rays/s");
+  if (run.slots > 0) line("speed", static_cast<double>(run.slots) / run.seconds / 1e6, "million pulse slots/s");
   line("peak memory", static_cast<double>(usage.ru_maxrss) / 1024, "MiB");  // Linux counts in KiB. Source: getrusage(2)
 }

@@ -309,13 +309,12 @@ class Session {
   void print_summary(const RunSummary& all, const std::string& traffic) const {
     print(all);
     if (!traffic.empty()) std::cout << "  messages     " << traffic << '\n';
-    const auto fate = [&](const char* name, Fate f) {
+    const auto fate = [&](const char* name, Fate f, const char* unit) {
       if (all.count(f) > 0)
-        std::cout << "  " << std::left << std::setw(13) << name << std::right << std::setw(12) << all.count(f)
-                  << " pulses\n";
+        std::cout << "  " << std::left << std::setw(13) << name << std::right << std::setw(12) << all.count(f) << unit;
     };
-    fate("with echoes", Fate::returned);
-    fate("blocked", Fate::blocked);
+    fate("with echoes", Fate::returned, " pulses\n");
+    fate("blocked", Fate::blocked, " pulse slots, when the optic is closed\n");
     for (const std::string& written : folders_) std::cout << "  " << written << '\n';
   }
 
