@@ -11,28 +11,22 @@
 /// Reference systems in rasters, in files beside them, and in LAS files.
 namespace PULSECAST_NAMESPACE::io::detail {
 
-inline constexpr std::string_view on_the_globe =
-    "projected coordinates, not degrees or geocentric ones: gdalwarp -t_srs EPSG:CODE, or pdal translate with "
-    "filters.reprojection";
-
 /// Items of reference systems. Source: OGC GeoTIFF 1.1, annex B; OGC 01-009 and 18-010 (WKT).
 inline constexpr FormatRule reference_rules[]{
     {"WKT PROJ*", FormatUse::read, "projected: its unit is that of x and y"},
-    {"WKT LOCAL_CS", FormatUse::read, "its unit is that of x and y"},
-    {"WKT ENG*", FormatUse::read, "its unit is that of x and y"},
+    {"WKT LOCAL_CS, WKT ENG*", FormatUse::read, "its unit is that of x and y"},
     {"WKT VERT*", FormatUse::read, "its unit is that of heights"},
-    {"WKT GEO*", FormatUse::refused, on_the_globe},
+    {"WKT GEO*, GeoKey 1024 = 2, GeoKey 1024 = 3", FormatUse::refused,
+     "projected coordinates, not degrees or geocentric ones: gdalwarp -t_srs EPSG:CODE, or pdal translate with "
+     "filters.reprojection"},
     {"GeoKey 1024 = 1", FormatUse::read, "GTModelType: projected coordinates"},
-    {"GeoKey 1024 = 2", FormatUse::refused, on_the_globe},
-    {"GeoKey 1024 = 3", FormatUse::refused, on_the_globe},
     {"GeoKey 1024 = *", FormatUse::noted, "a projected system is assumed"},
     {"GeoKey 1025", FormatUse::read, "GTRasterType: pixels are areas or points"},
     {"GeoKey 1026", FormatUse::read, "GTCitation: unit, as `(ftUS)`, or well-known text of Esri"},
-    {"GeoKey 20*", FormatUse::read, "geodetic base; coordinates stay in it"},
     {"GeoKey 3072", FormatUse::read, "ProjectedCRS: EPSG code"},
     {"GeoKey 3076", FormatUse::read, "ProjLinearUnits: coordinates become metres"},
     {"GeoKey 3077", FormatUse::read, "ProjLinearUnitSize: metres a unit of coordinates"},
-    {"GeoKey 30*", FormatUse::read, "parameters of a projection; coordinates stay in it"},
+    {"GeoKey 20*, GeoKey 30*", FormatUse::read, "geodetic base and parameters; coordinates stay in them"},
     {"GeoKey 4096", FormatUse::read, "Vertical: EPSG code"},
     {"GeoKey 4097", FormatUse::read, "VerticalCitation: name of the vertical system, and its unit"},
     {"GeoKey 4098", FormatUse::read, "VerticalDatum; heights stay in it"},
@@ -41,9 +35,8 @@ inline constexpr FormatRule reference_rules[]{
     {"unit of *", FormatUse::refused, "a known unit: gdal_edit.py -a_srs EPSG:CODE, or pdal's --a_srs, names one"},
     {"depths", FormatUse::refused, "heights, not depths; with a vertical scale as a setting its numbers are heights"},
     {"axis to the west", FormatUse::noted, "x is taken as east, and y as north"},
-    {"coordinates without a unit", FormatUse::noted, "metres are assumed"},
+    {"coordinates without a unit, no well-known text", FormatUse::noted, "metres are assumed"},
     {"heights without a unit", FormatUse::noted, "those of rasters are taken as metres, z of points in the unit of x"},
-    {"no well-known text", FormatUse::noted, "metres are assumed"},
     {"text that is cut off", FormatUse::refused, "a complete well-known text"},
 };
 
