@@ -185,8 +185,7 @@ class ReferenceReader {
     made_.epsg = projected == GeoKeys::user_defined ? std::uint16_t{0} : projected;
     made_.vertical_epsg = vertical == GeoKeys::user_defined ? std::uint16_t{0} : vertical;
     has_heights_ = vertical != 0;
-    if (is_between(systems_to_the_west, projected) || keys.code(3075) == 27)  // Transverse Mercator, south oriented
-      keep("axis to the west");
+    is_west_ |= is_between(systems_to_the_west, projected) || keys.code(3075) == 27;  // South Orientated
     if (const auto told = unit_of(keys, 3076, 3077)) unit_ = told;
     if (const auto told = unit_of(keys, 4099, 0)) height_ = told;
     read_names(keys.text(1026).empty() ? keys.text(3073) : keys.text(1026), keys.text(4097));
@@ -221,24 +220,22 @@ class ReferenceReader {
     keep("WKT " + system.keyword);
     const bool is_vertical = system.keyword.starts_with("VERT");
     std::optional<double>& unit = is_vertical ? height_ : unit_;
-    bool is_west = false;
     std::string_view rest = system.content;
     while (const std::optional<WktNode> part = take_node(rest)) {
       if (part->keyword == "AXIS") {
         const std::string way = text::lower(part->after_name());
         if (way.starts_with("down")) keep_heights();
-        is_west |= way.starts_with("west");
+        is_west_ |= way.starts_with("west");
         std::string_view of_axis = part->content;
         while (const std::optional<WktNode> one = take_node(of_axis))
           if (one->keyword.ends_with("UNIT")) unit = unit_of(*one);
       }
       // Esri's texts have no axes: by these words, theirs go there
-      is_west |= part->content.starts_with("\"Transverse_Mercator_South") ||
-                 (part->content.starts_with("\"XY_Plane_Rotation") && part->after_name().starts_with('0'));
+      is_west_ |= part->content.starts_with("\"Transverse_Mercator_South") ||
+                  (part->content.starts_with("\"XY_Plane_Rotation") && part->after_name().starts_with('0'));
       if (part->keyword == "UNIT" || part->keyword == "LENGTHUNIT") unit = unit_of(*part);
       if (part->content.starts_with("\"Direction\"") && part->after_name().starts_with("-1")) keep_heights();
     }
-    if (is_west) keep("axis to the west");
   }
 
   void keep_heights() {
@@ -298,6 +295,7 @@ class ReferenceReader {
   }
 
   [[nodiscard]] SpatialReference finished() {
+    if (is_west_) keep("axis to the west");
     if (!unit_) keep("coordinates without a unit");
     made_.unit = unit_.value_or(1);
     if (!height_ && (made_.unit != 1 || has_heights_) && otherwise_ != HeightUnit::by_setting)
@@ -312,6 +310,7 @@ class ReferenceReader {
   SpatialReference made_;
   std::optional<double> unit_, height_;  ///< of coordinates and of heights [m]
   bool has_heights_ = false;             ///< the keys name a vertical system
+  bool is_west_ = false;                 ///< an axis goes to the west
 };
 
 }  // namespace PULSECAST_NAMESPACE::io::detail
