@@ -8,7 +8,6 @@
 #include <cstdlib>
 #include <iostream>
 #include <iterator>
-#include <map>
 #include <span>
 #include <string>
 #include <system_error>
@@ -328,15 +327,11 @@ class CommandLine {
   /// Spells options as they are declared, however their letters are. CLI11 can ignore case, too, but compares each
   /// option with all others for it, which takes as long as all else of a start.
   void fold_case(std::vector<std::string>& words) const {
-    std::map<std::string, std::string> known;
-    for (const CLI::Option* option : app_.get_options())
-      for (const std::string& name : option->get_lnames()) known.emplace(text::lower("--" + name), "--" + name);
     for (std::string& word : words) {
       const std::size_t end = std::min(word.find('='), word.size());
-      if (const auto at = known.find(text::lower(word.substr(0, end))); at != known.end()) {
-        word.replace(0, end, at->second);
-        continue;
-      }
+      for (const CLI::Option* option : app_.get_options())
+        for (const std::string& name : option->get_lnames())
+          if (text::is_same_word(word.substr(0, end), "--" + name)) word.replace(0, end, "--" + name);
       if (!word.starts_with('-') || word.starts_with("--")) continue;
       for (char& letter : std::span(word).subspan(1)) {  // as in -qJ2
         const CLI::Option* const option = app_.get_option_no_throw(std::string("-") + text::lower(letter));

@@ -17,6 +17,7 @@
 #include <sys/resource.h>
 
 #include "support/file_errors.hpp"
+#include "support/format_cases.hpp"
 #include "support/generators.hpp"
 #include "support/spoilt_text.hpp"
 #include "support/temporary_folder.hpp"
@@ -67,7 +68,8 @@ std::string city(const std::vector<std::string>& members,
                                                                                      {"tran", "transportation"},
                                                                                      {"wtr", "waterbody"},
                                                                                      {"brid", "bridge"},
-                                                                                     {"luse", "landuse"}})
+                                                                                     {"luse", "landuse"},
+                                                                                     {"app", "appearance"}})
     text += " xmlns:" + prefix + "=\"http://www.opengis.net/citygml/" + room + "/2.0\"";
   text += ">\n<gml:boundedBy><gml:Envelope srsName=\"" + system +
           "\" srsDimension=\"3\"><gml:lowerCorner>0 0 0</gml:lowerCorner><gml:upperCorner>1 1 "
@@ -259,8 +261,48 @@ TEST_CASE("degrees are known by the size of objects, whatever the code of their 
   const MeshFile none = read(
       tree("t", "<libraryObject>tree.x3d</libraryObject>", "1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1", "1 2 3"), "EPSG:25832");
   CHECK(std::ranges::any_of(none.warnings, [](const std::string& one) {
-    return contains(one, "1 implicit geometries are files of their own, and left out");
+    return contains(one, "implicit geometries that are files of their own are left out");
   }));
+}
+
+TEST_CASE("elements and attributes of CityGML are read, noted and refused by the rules") {
+  const Folder folder;
+  const std::string sound =
+      city({house(), tree("t",
+                          "<relativeGMLGeometry><gml:MultiSurface>" + polygon("t0", "0 0 0 1 0 0 0 1 0 0 0 0") +
+                              "</gml:MultiSurface></relativeGMLGeometry>",
+                          "1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1", "0 0 0")});
+  const auto warnings = [&](const std::string& text) {
+    const MeshFile file = read_citygml(folder.write("a.gml", text)).file;
+    CHECK(file.placements.size() == 2);
+    return file.warnings;
+  };
+  CHECK(warnings(sound).empty());  // also without a note for the closing corner of each polygon
+  std::vector<test::FormatCase> cases;
+  for (const std::string_view row : {"posList", "srsName", "transformationMatrix"})
+    cases.push_back({row, [&] { return warnings(sound); }});
+  const auto with = [&](std::string_view row, const std::string& from, const std::string& to) {
+    cases.push_back({row, [&, from, to] { return warnings(replaced(sound, from, to)); }});
+  };
+  const std::string in = "<bldg:lod1MultiSurface>", end = "<cityObjectMember>";
+  with("another srsName", "<gml:MultiSurface>", "<gml:MultiSurface srsName='EPSG:25833'>");
+  with("srsDimension=\"2\"", "posList srsDimension=\"3\"", "posList srsDimension=\"2\"");
+  with("uomLabels", "posList srsDimension", "posList uomLabels=\"ft ft ft\" srsDimension");
+  with("last row of a transformationMatrix", "0 0 0 1</", "0 0 0 2</");
+  with("libraryObject", "<relativeGMLGeometry", "<libraryObject>tree.x3d</libraryObject><relativeGMLGeometry");
+  with("citygml/3.0", "citygml/2.0", "citygml/3.0");
+  for (const std::string_view name :
+       {"coordinates", "outerBoundaryIs", "innerBoundaryIs", "surfaceMembers", "Ring", "Tin"})
+    with(name, in, element("gml:" + std::string(name), "x", "") + in);
+  with("RasterRelief", end, element("dem:RasterRelief", "x", "") + end);
+  with("terminationDate", in, "<terminationDate>2010-01-01</terminationDate>" + in);
+  for (const std::string_view name : {"X3DMaterial", "ParameterizedTexture", "GeoreferencedTexture"})
+    with(name, end,
+         "<app:appearanceMember><app:Appearance><app:surfaceDataMember><app:" + std::string(name) +
+             "/></app:surfaceDataMember></app:Appearance></app:appearanceMember>" + end);
+  with("measureAttribute", in, "<measureAttribute name=\"h\"><value uom=\"m\">3</value></measureAttribute>" + in);
+  with("*", in, "<bldg:lod0FootPrint/>" + in);
+  test::check_rules(io::detail::city_rules, cases);
 }
 
 TEST_CASE("systems of CityGML that may not be in metres are noted by their code") {

@@ -36,6 +36,13 @@ TEST_CASE("the first rule that fits an item holds, for all items of a beginning,
   CHECK(rule_of(rules, "SCALES") == nullptr);
 }
 
+TEST_CASE("a rule may have several names, each for itself or for all that begin so") {
+  constexpr std::array<FormatRule, 2> several{{{"a b, c*", FormatUse::read, ""}, {"c, d", FormatUse::read, ""}}};
+  for (const char* name : {"a b", "c", "cx", "a b, c*"}) CHECK(rule_of(several, name) == &several[0]);
+  CHECK(rule_of(several, "d") == &several[1]);
+  for (const char* name : {"a", "b", "", "dx"}) CHECK(rule_of(several, name) == nullptr);
+}
+
 TEST_CASE("an item is read, noted or refused by its rule, and refused without one") {
   CHECK(kept("SCALE").empty());
   CHECK(kept("KHR_x") == std::vector<std::string>{"a.tif: has the tag 'KHR_x': drawn without it"});

@@ -15,6 +15,7 @@
 #include <pulsecast/material/water_types.hpp>
 
 #include "support/file_errors.hpp"
+#include "support/format_cases.hpp"
 #include "support/relative.hpp"
 #include "support/temporary_folder.hpp"
 
@@ -304,13 +305,43 @@ TEST_CASE("Kd is the colour of points, white without one") {
   CHECK(library.materials.at("c").colour == Vec3{0.5, 0.5, 0.5});
 }
 
-TEST_CASE("transparency without a picture is noted, as surfaces are opaque") {
-  CHECK(mtl("newmtl a\nd 1\nTr 0\n").warnings.empty());
-  for (const char* statement : {"d 0.5", "Tr 0.3", "d 0"}) {
-    const MaterialLibrary library = mtl(std::string("newmtl a\n") + statement + "\n");
-    REQUIRE(library.warnings.size() == 1);
-    CHECK(contains(library.warnings[0], "has no effect: the surface is opaque"));
+TEST_CASE("keys of an MTL file are read, noted and refused by the rules") {
+  std::vector<test::FormatCase> cases;
+  const auto add = [&](std::string_view row, const std::string& key, std::size_t notes) {
+    cases.push_back({row, [=] {
+                       const MaterialLibrary library = mtl("newmtl a\n" + key + "\n");
+                       CHECK(library.warnings.size() == notes);
+                       CHECK(library.materials.contains("a"));
+                       return library.warnings;
+                     }});
+  };
+  for (const char* key : {"Kd", "Ks", "Ns", "illum", "Ni", "Tf", "Pm", "d", "Ka", "Ke", "helios_reflectance",
+                          "helios_isGround", "helios_classification", "helios_useVertexColors", "pulsecast_medium",
+                          "pulsecast_roughness", "pulsecast_retroreflection"})
+    add(key, std::string(key) + " 1", 0);
+  for (const char* key : {"map_Kd", "map_d", "pulsecast_reflectanceMap", "map_Ka", "map_Ke"})
+    add(key, std::string(key) + " a.png", 0);
+  for (const char* key : {"bump", "norm", "disp"}) add(key, std::string(key) + " a.png", 1);
+  add("newmtl", "newmtl b", 0);
+  add("Tr", "Tr 0", 0);
+  add("d below 1", "d 0.5", 1);
+  add("Tr above 0", "Tr 0.5", 1);
+  add("helios_spectra", "helios_spectra oak", 1);  // which no library has
+  add("pulsecast_normalizedPhong", "pulsecast_normalizedPhong true", 0);
+  add("pulsecast_interface", "pulsecast_interface glass", 0);
+  add("pulsecast_water", "pulsecast_water II", 1);  // without a wavelength
+  add("pulsecast_retroreflector", "pulsecast_retroreflector beads", 0);
+  add("pulsecast_*", "pulsecast_rougness 0.1", 0);
+  add("map_*", "map_Bump a.png", 1);
+  add("*", "helios_reflectanc 0.1", 1);
+  test::check_rules(io::detail::mtl_rules, cases);
+  for (const char* key : {"d -halo 0.5", "d 0", "Tf spectral glass.rfl", "Ni xyz", "Pr 0.1"}) {
+    CAPTURE(key);
+    CHECK(mtl("newmtl a\n" + std::string(key) + "\n").warnings.size() == 1);
   }
+  CHECK(mtl("newmtl a\nd 0.5\nnewmtl b\nd 0.4\n").warnings ==
+        std::vector<std::string>{path.string() + ", line 2: 'd 0.5': the surface is opaque; map_d cuts holes, "
+                                                 "pulsecast_interface makes panes, the first of 2"});
 }
 
 TEST_CASE("pictures are named beside the file, without their options, and for the first of equal names") {

@@ -26,6 +26,7 @@
 #include "support/allocations.hpp"
 #include "support/data_folder.hpp"
 #include "support/file_errors.hpp"
+#include "support/format_cases.hpp"
 #include "support/generators.hpp"
 #include "support/sanitized.hpp"
 #include "support/temporary_folder.hpp"
@@ -79,19 +80,45 @@ std::string polygon(const std::vector<Vec3>& outline) {
 
 }  // namespace
 
-TEST_CASE("colours of vertices and maps of pictures are noted, and a weight of curves is not") {
+TEST_CASE("statements of an OBJ file are read, noted and refused by the rules") {
   const Folder folder;
   const std::string faces = corners + "f 1 2 3\n";
-  const auto noted = [&](const std::string& more) { return folder.obj(faces + more + "f 1 2 3\n").warnings; };
-  CHECK(noted("v 0 0 0 1\n").empty());
-  for (const char* more : {"v 0 0 0 0.1 0.2 0.3\n", "v 0 0 0 1 0.1 0.2 0.3\n"}) {
-    REQUIRE(noted(more).size() == 1);
-    CHECK(contains(noted(more)[0], "colours of vertices have no effect"));
-  }
-  for (const char* more : {"usemap wood\n", "maplib wood.map\n"}) {
-    REQUIRE(noted(more).size() == 1);
-    CHECK(contains(noted(more)[0], "is not known and left out"));
-  }
+  const auto with = [&](const std::string& more, std::size_t notes = 0, std::size_t triangles = 2) {
+    return test::FormatCase{"", [=, &folder] {
+                              const ObjModel model = folder.obj(faces + more + "\nf 1 2 3\n");
+                              CHECK(model.mesh.triangles.size() == triangles);
+                              CHECK(model.warnings.size() == notes);
+                              return model.warnings;
+                            }};
+  };
+  std::vector<test::FormatCase> cases{{"usemtl", with("usemtl a", 1).warnings_of},
+                                      {"mtllib", with("mtllib none.mtl", 1).warnings_of},
+                                      {"f", with("f 1 2 3 4", 0, 4).warnings_of}};
+  for (const std::string_view name : {"vn", "vt", "o", "g", "s"})
+    cases.push_back({name, with(std::string(name) + " 1 0 0").warnings_of});
+  for (const std::string_view name :
+       {"fo", "l", "p", "surf", "lod", "shadow_obj", "trace_obj", "maplib", "usemap", "call", "csh"})
+    cases.push_back({name, with(std::string(name) + " 1 2 3", 1).warnings_of});
+  const std::initializer_list<std::pair<std::string_view, const char*>> others{
+      {"v", "v 0 0 0 1"},
+      {"v x y z r g b", "v 0 0 0 0.1 0.2 0.3"},
+      {"v x y z w", "v 0 0 0 0.5"},
+      {"curv*", "curv2 1 2"},
+      {"f without area", "f 1 1 2"},
+      {"f that crosses itself", "f 1 3 2 4"},
+      {"# unit", "# File units = inches"},
+      {"# offset", "# Global shift: -500000 0 0"},
+      {"*", "cstype bezier"}};
+  for (const auto& [name, line] : others)
+    cases.push_back({name, with(line, name == "v" ? 0 : 1, name.starts_with("f that") ? 4 : 2).warnings_of});
+  cases.push_back({"cut line", [&] { return folder.obj(corners + "f 1 2 3").warnings; }});
+  test::check_rules(io::detail::obj_rules, cases);
+  CHECK(with("# This file uses centimeters as units for non-parametric coordinates.", 1).warnings_of().size() == 1);
+  CHECK(
+      with("# File units = meters\n# 3 vertices, no shift\n# a unit\nv 0 0 0 1 0.1 0.2 0.3", 1).warnings_of().size() ==
+      1);
+  CHECK(contains(folder.obj(faces + "l 1 2\np 1\nl 2 3\n").warnings.at(0),
+                 "line 6: 'l 1 2': lines, points and curves have no area and are left out, the first of 3"));
 }
 
 TEST_CASE("lines that end in CR alone are told, in OBJ and in MTL files") {
@@ -289,7 +316,7 @@ TEST_CASE("a material or library without a name is told, and the faces are there
   CHECK(model.mesh.triangles.size() == 1);
   CHECK(model.materials.at(0).name == "default");
   REQUIRE(model.warnings.size() == 2);
-  CHECK(contains(model.warnings[0], "line 1: 'mtllib' is not known and left out"));
+  CHECK(contains(model.warnings[0], "line 1: 'mtllib': other statements are left out"));
   CHECK(contains(model.warnings[1], "line 6: no MTL file describes the material 'default'"));
 }
 
@@ -346,10 +373,10 @@ TEST_CASE("several MTL files may be named, with blanks and with backslashes; of 
   CHECK(model.materials[2].reflectance == 0.4);
 }
 
-TEST_CASE("objects, groups and what else OBJ knows are passed over; what it does not know is told") {
+TEST_CASE("objects and groups are passed over; what has no area, or is unknown, is told") {
   const ObjModel model = Folder().obj("o one\ng a b\ns off\n" + corners + "f 1 2 3\no two\nl 1 2\np 1\nf 2 3 4\n");
   CHECK(model.mesh.triangles.size() == 2);
-  CHECK(model.warnings.empty());
+  CHECK(model.warnings.size() == 1);
   const ObjModel odd = Folder().obj(corners + "f 1 2 3\nfoo 1\nbar 2\n");
   REQUIRE(odd.warnings.size() == 1);
   CHECK(contains(odd.warnings[0], "line 6"));

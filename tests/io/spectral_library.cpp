@@ -10,6 +10,7 @@
 #include <doctest/doctest.h>
 
 #include "support/file_errors.hpp"
+#include "support/format_cases.hpp"
 #include "support/relative.hpp"
 #include "support/temporary_folder.hpp"
 
@@ -88,6 +89,40 @@ TEST_CASE("the titles of the columns tell the units") {
   CHECK(contains(names.warnings[0], ", line 2: its header says percent, but its values reach 0.6 only"));
   check(spectrum("Wavelength(\xC2\xB5m)\tReflectance(%)\n0.5\t20\n1.5\t60\n"), 0.5e-6, 1.5e-6, 0.4);
   check(spectrum("wavelength [um] reflectance [%]\n0.5 20\n1.5 60\n"), 0.5e-6, 1.5e-6, 0.4);
+}
+
+TEST_CASE("headers of spectra are read and refused by the rules") {
+  std::vector<test::FormatCase> cases;
+  const auto add = [&](const char* row, const char* head) {
+    cases.push_back({row, [head] {
+                       const SpectrumFile file = spectrum(std::string(head) + "\n500 0.2\n1500 0.6\n");
+                       check(file, 0.5e-6, 1.5e-6, 0.4);
+                       return file.warnings;
+                     }});
+  };
+  add("x units:", "X Units: Wavelength (nanometers)");
+  add("y units:", "Y Units: Reflectance (fraction)");
+  add("titles", "wavelength (nm) reflectance transmittance");
+  add("units", "units: nm");
+  add("*", "Description: broadband emission of a lamp at 10000 Angstrom\nof oak");
+  add("first column: y", "First Column: Y\nSecond Column: X");
+  add("angstrom", "X Units: Wavelength (Angstrom)\nY Units: Reflectance (fraction)\n");
+  add("frequency", "frequency reflectance");
+  add("thz", "f [THz] reflectance");
+  add("energy", "photon energy (eV), reflectance");
+  add("band", "Band, Wavelength, Reflectance");
+  add("channel", "channel;wavelength;reflectance");
+  add("index", "index wavelength reflectance");
+  add("transmi", "wavelength, transmission, reflectance");
+  add("absor", "Y Units: Absorbance");
+  add("emiss", "wavelength emissivity");
+  add("radian", "units= Radiance, Radiance\ndata=");
+  add("refractive", "wavelength, refractive n");
+  add("10000", "wavelength (nm), reflectance * 10000");
+  add("scatter", "Y Units: Backscatter");
+  test::check_rules(io::detail::spectrum_rules, cases);
+  for (const char* head : {"Reflectance, Wavelength", "wavelength irradiance", "Y Units: Gloss"})
+    CHECK_THROWS_AS(spectrum(std::string(head) + "\n500 0.2\n"), FileError);
 }
 
 TEST_CASE("a file of 26 header lines of any words, as HELIOS++ takes them, is read") {

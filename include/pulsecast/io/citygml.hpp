@@ -14,6 +14,7 @@
 #include <citygml/transformmatrix.h>
 
 #include <pulsecast/io/detail/mesh_file/file_maker.hpp>
+#include <pulsecast/io/detail/mesh_file/mesh_rules.hpp>
 #include <pulsecast/io/detail/plain_xml.hpp>
 #include <pulsecast/io/detail/reference_reader.hpp>
 #include <pulsecast/io/mesh_file.hpp>
@@ -104,6 +105,7 @@ class CityGmlImport {
 
   [[nodiscard]] RawScene read() {
     require_plain_xml(path_);
+    keep_rules();
     citygml::ParserParams params;
     params.maxLOD = settings_.max_lod;
     const auto log = std::make_shared<CityGmlLog>();
@@ -135,11 +137,10 @@ class CityGmlImport {
     if (code && !is_between(systems_in_metres, *code))
       scene_.warnings.push_back(
           warning(path_.string(), 0, "is in EPSG:", *code, ", which may be in feet: metres are assumed"));
-    if (files_ > 0)
-      scene_.warnings.push_back(
-          warning(path_.string(), 0, files_, " implicit geometries are files of their own, and left out"));
     for (const std::string& message : log->messages)
-      scene_.warnings.push_back(warning(path_.string(), 0, "libcitygml: ", printable(message)));
+      if (message.find("Attribute>") == message.npos)
+        scene_.warnings.push_back(
+            warning(path_.string(), 0, "libcitygml: ", printable(message), ": ", rule_of(city_rules, "*")->meaning));
     scene_.reference = name_;
     return std::move(scene_);
   }
@@ -150,6 +151,29 @@ class CityGmlImport {
     std::vector<Corners3> triangles{};
   };
   using ByClass = std::map<CityClass, Surfaces>;
+
+  void keep(std::string_view item) {
+    if (kept_.insert(rule_of(city_rules, item)).second) keep_rule(city_rules, path_, "item", item, scene_.warnings);
+  }
+  /// Keeps to the rules for elements and attributes, most of which libcitygml passes over.
+  void keep_rules() {
+    const MappedFile file(path_, "an XML file");
+    std::optional<std::uint16_t> system;
+    for (std::string_view rest = file.text(); !rest.empty();) {
+      rest.remove_prefix(std::min(rest.find('<'), rest.size() - 1) + 1);
+      std::string_view tag = rest.substr(0, rest.find('>'));
+      std::string_view name = text::take_word(tag, " \t\r\n/");
+      name.remove_prefix(name.find(':') + 1);
+      if (rule_of(city_rules, name)->name != "*") keep(name);
+      for (const std::string_view part : {"srsDimension=\"2\"", "uomLabels", "citygml/3.0"})
+        if (tag.find(part) != tag.npos) keep(part);
+      const std::size_t named = tag.find("srsName=");
+      const std::string_view value = tag.substr(std::min(tag.size(), named + 9));
+      const auto code = named == tag.npos ? std::nullopt : epsg_of(value.substr(0, value.find_first_of("'\"")));
+      if (system && code && code != system) keep("another srsName");
+      if (!system) system = code;
+    }
+  }
 
   [[noreturn]] void fail(const auto&... problem) const {
     detail::fail(path_, "is no CityGML file that can be read: ", printable(text::message(problem...)));
@@ -196,7 +220,6 @@ class CityGmlImport {
     for (unsigned i = 0; i < object.getGeometriesCount(); ++i) offer(object.getGeometry(i).getLOD());
     for (unsigned i = 0; i < object.getImplicitGeometryCount(); ++i) {
       const citygml::ImplicitGeometry& implicit = object.getImplicitGeometry(i);
-      files_ += implicit.getGeometriesCount() == 0 ? 1 : 0;
       for (unsigned k = 0; k < implicit.getGeometriesCount(); ++k) offer(implicit.getGeometry(k).getLOD());
     }
     for (unsigned i = 0; i < object.getChildCityObjectsCount(); ++i)
@@ -229,7 +252,9 @@ class CityGmlImport {
           if (indices[k + c] >= count) fail("a polygon has a vertex that is not there");
           corners[c] = static_cast<std::uint32_t>(first + indices[k + c]);
         }
-        to.triangles.push_back(corners);
+        const auto place = [&](std::size_t c) { return to.vertices[corners[c]]; };
+        if (place(0) != place(1) && place(1) != place(2) && place(2) != place(0))  // of the closing corner of a ring
+          to.triangles.push_back(corners);
       }
     }
     for (unsigned i = 0; i < geometry.getGeometriesCount(); ++i) add(geometry.getGeometry(i), to, depth + 1);
@@ -248,6 +273,7 @@ class CityGmlImport {
     }
     if (!known->second) return;
     const double* const m = geometry.getTransformMatrix().getMatrix();  // row by row
+    if (m[12] != 0 || m[13] != 0 || m[14] != 0 || m[15] != 1) keep("last row of a transformationMatrix");
     const TVec3d at = geometry.getReferencePoint();
     const Matrix3 linear(Vec3(m[0], m[4], m[8]), Vec3(m[1], m[5], m[9]), Vec3(m[2], m[6], m[10]));
     const Vec3 shift(m[3] + at.x, m[7] + at.y, m[11] + at.z);
@@ -276,7 +302,7 @@ class CityGmlImport {
   std::map<CityClass, std::uint32_t> materials_;
   std::set<const citygml::Polygon*> taken_;  ///< of the current object
   double largest_ = 0, farthest_ = 0;        ///< size and coordinates of objects, as far as they are their own
-  std::uint64_t files_ = 0;                  ///< implicit geometries without a geometry
+  std::set<const FormatRule*> kept_;         ///< rules of items of the file
   std::map<std::pair<std::vector<const citygml::Geometry*>, CityClass>, std::optional<std::uint32_t>> shared_;
 };
 

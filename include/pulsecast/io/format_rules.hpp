@@ -17,16 +17,31 @@ enum class FormatUse : std::uint8_t {
 /// Tag, key, band, element, attribute or extension that changes geometry, radiometry, place or time. The rules of a
 /// format are one table, which its reader asks and `docs/formats.md` prints.
 struct FormatRule {
-  std::string_view name;     ///< as the format names it; with `*` at its end, all that begin so
+  std::string_view name;     ///< as the format names it; with `*` at its end, all that begin so; or several: `a, b*`
   FormatUse use;             ///< what the reader does with it
   std::string_view meaning;  ///< what it becomes; for `noted`, what is so without it; for `refused`, the way out
 };
 
+namespace detail {
+
+/// Takes the first of several names, up to a comma and a blank.
+[[nodiscard]] constexpr std::string_view take_name(std::string_view& names) noexcept {
+  const std::string_view first = names.substr(0, names.find(", "));
+  names.remove_prefix(std::min(names.size(), first.size() + 2));
+  return first;
+}
+
+}  // namespace detail
+
 /// First rule for an item, or null.
 [[nodiscard]] constexpr const FormatRule* rule_of(std::span<const FormatRule> rules, std::string_view name) noexcept {
-  for (const FormatRule& rule : rules)
-    if (rule.name.ends_with('*') ? name.starts_with(rule.name.substr(0, rule.name.size() - 1)) : name == rule.name)
-      return &rule;
+  for (const FormatRule& rule : rules) {
+    if (name == rule.name) return &rule;
+    for (std::string_view names = rule.name; !names.empty();)
+      if (const std::string_view one = detail::take_name(names);
+          one.ends_with('*') ? name.starts_with(one.substr(0, one.size() - 1)) : name == one)
+        return &rule;
+  }
   return nullptr;
 }
 

@@ -59,6 +59,7 @@ class MtlReader : private StatementBuffer {
     tinyobj::LoadMtl(&ignored_numbers, &found, &stream, nullptr, nullptr);
     MaterialLibrary library;
     library.warnings = std::move(warnings_);
+    notes_.tell(path(), library.warnings);
     for (const tinyobj::material_t& m : found)
       if (!m.name.empty()) library.materials.emplace(m.name, material(m, library.warnings));
     library.pictures = std::move(pictures_);
@@ -83,10 +84,9 @@ class MtlReader : private StatementBuffer {
     const std::vector<std::string_view>& given = words();
     if (const char* const expected = expected_words(keyword(), given)) require(false, expected);
     if (is_first) ready = "newmtl default" + exponent;
-    if (keyword() == "d" || keyword() == "Tr")
-      if (const auto share = given.empty() ? std::nullopt : number_in<double>(given[0]);
-          share && *share != (keyword() == "d" ? 1 : 0))
-        note("has no effect: the surface is opaque; map_d cuts holes, pulsecast_interface makes panes");
+    const auto share = given.empty() ? std::nullopt : number_in<double>(given[0]);
+    const bool is_clear = (keyword() == "d" && share != 1.0) || (keyword() == "Tr" && share != 0.0);
+    notes_.keep(!is_clear ? keyword() : keyword() == "d" ? "d below 1" : "Tr above 0", path(), line(), statement());
     const bool is_colour = keyword() == "Kd" || keyword() == "Ks";
     const auto is_beyond = [&](std::string_view word) {
       return number_in<double>(word).value_or(0) > 1 || (!is_colour && word.starts_with('-'));
@@ -98,8 +98,9 @@ class MtlReader : private StatementBuffer {
     else if (keyword() == "Ns")
       ready += standard_numbers(given, 1);
     // with textures, tinyobjloader would change the colour, depending on the order
-    else if ((is_light_key(keyword()) && !given.empty() && number_in<double>(given[0])) ||
-             keyword().starts_with("helios_") || keyword().starts_with("pulsecast_"))
+    else if (is_light_key(keyword()) && !share)
+      note("is ignored: expected numbers");
+    else if (is_light_key(keyword()) || keyword().starts_with("helios_") || keyword().starts_with("pulsecast_"))
       ready += statement();
   }
 
@@ -240,6 +241,7 @@ class MtlReader : private StatementBuffer {
 
   const SpectralLibrary& spectra_;
   std::vector<std::string> warnings_;
+  StatementNotes notes_{mtl_rules};
   bool begun_ = false, repeated_ = false;                             // after a statement; for a name again
   std::string current_ = "default";                                   // name of the current material
   std::map<std::pair<std::string, std::string>, std::size_t> lines_;  // by material and keyword

@@ -4,6 +4,7 @@
 #define PULSECAST_IO_SENSOR_CALIBRATION_HPP
 
 #include <pulsecast/io/detail/packets/calibration_file.hpp>
+#include <pulsecast/io/detail/packets/rules.hpp>
 #include <pulsecast/io/ouster_packets.hpp>
 #include <pulsecast/io/output_file.hpp>
 #include <pulsecast/io/velodyne_packets.hpp>
@@ -42,12 +43,12 @@ inline void write_velodyne_calibration(const std::filesystem::path& path, const 
   const detail::CalibrationFile file(path, "a Velodyne calibration");
   const std::size_t count = sheet.lasers.size();
   const auto all = static_cast<double>(count);
-  file.number(file.at(file.root(), "num_lasers"), "num_lasers", all, all);
-  if (const auto resolution = file.find(file.root(), "distance_resolution")) {
+  file.number(file.at("num_lasers"), "num_lasers", all, all);
+  if (const auto resolution = file.find("distance_resolution")) {
     const double own = detail::VelodyneFormat::distance_resolution(sheet);
     file.number(*resolution, "distance_resolution", own, own);
   }
-  const YAML::Node lasers = file.at(file.root(), "lasers");
+  const YAML::Node lasers = file.at("lasers");
   if (!lasers.IsSequence() || lasers.size() != count) file.fail(lasers, "lasers is no list of ", count);
   std::vector<bool> is_known(count);
   for (const YAML::Node& laser : lasers) {
@@ -61,9 +62,13 @@ inline void write_velodyne_calibration(const std::filesystem::path& path, const 
     sheet.lasers[k].azimuth = 0 - number("rot_correction", pi);
     sheet.lasers[k].elevation = number("vert_correction", pi / 2);
     sheet.lasers[k].height = number("vert_offset_correction", 1);
-    for (const char* const name :
-         {"dist_correction", "dist_correction_x", "dist_correction_y", "horiz_offset_correction"})
-      if (file.find(laser, name)) number(name, 0);
+    for (const auto& pair : laser) {
+      const std::string name = file.word(pair.first, "a key");
+      const FormatRule* const rule = rule_of(detail::velodyne_rules, name);
+      if (!rule)
+        file.fail(pair.first, "has the key ", text::quoted(name), ", which is unknown: expected a laser without it");
+      if (rule->use == FormatUse::refused) file.require(pair.second, name, {0}, *rule);
+    }
   }
   return sheet;
 }
@@ -110,11 +115,11 @@ inline void write_ouster_metadata(const std::filesystem::path& path, const Spinn
 /// all else is of the data sheet. @throws FileError with the line of the first error
 [[nodiscard]] inline SpinningSensor read_ouster_metadata(const std::filesystem::path& path) {
   const detail::CalibrationFile file(path, "the metadata of an Ouster sensor");
-  const YAML::Node line = file.at(file.section("sensor_info"), "prod_line");
+  const YAML::Node line = file.at("prod_line");
   const std::string model = file.word(line, "prod_line");
   if (!model.starts_with("OS-1-64")) file.fail(line, "prod_line is ", text::quoted(model), ": expected OS-1-64");
 
-  const YAML::Node mode = file.at(file.section("config_params"), "lidar_mode");
+  const YAML::Node mode = file.at("lidar_mode");
   const std::string word = file.word(mode, "lidar_mode");
   std::string_view rest = word;
   const auto columns = text::number_in<unsigned>(text::take_word(rest, "x"));
@@ -125,7 +130,7 @@ inline void write_ouster_metadata(const std::filesystem::path& path, const Spinn
 
   const std::size_t count = sensor.lasers.size();
   const auto angles = [&](const char* name, double most) {
-    return file.numbers(file.at(file.section("beam_intrinsics"), name), name, count, -most, most);
+    return file.numbers(file.at(name), name, count, -most, most);
   };
   const std::vector<double> altitudes = angles("beam_altitude_angles", 90);
   const std::vector<double> azimuths = angles("beam_azimuth_angles", 180);
@@ -134,13 +139,24 @@ inline void write_ouster_metadata(const std::filesystem::path& path, const Spinn
     sensor.lasers[k].azimuth = azimuths[k] * pi / 180;
   }
   constexpr const char* lenses = "lidar_origin_to_beam_origin_mm";
-  if (const auto radius = file.find(file.section("beam_intrinsics"), lenses))
-    sensor.exit_radius = 1e-3 * file.number(*radius, lenses, 0, 1000);
+  if (const auto radius = file.find(lenses)) sensor.exit_radius = 1e-3 * file.number(*radius, lenses, 0, 1000);
   constexpr const char* place = "lidar_to_sensor_transform";
-  if (const auto transform = file.find(file.section("lidar_intrinsics"), place))
+  if (const auto transform = file.find(place))
     for (const double height = 1e-3 * file.numbers(*transform, place, 16, -1000, 1000)[11];
          SensorLaser & laser : sensor.lasers)
       laser.height = height;
+  const double height = 1e3 * sensor.lasers.front().height;
+  const double frame = *columns;
+  for (const auto& [name, needed] : std::initializer_list<std::pair<const char*, std::vector<double>>>{
+           {place, {-1, 0, 0, 0, 0, -1, 0, 0, 0, 0, 1, height, 0, 0, 0, 1}},
+           {"beam_to_lidar_transform", {1, 0, 0, 1e3 * sensor.exit_radius, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}},
+           {"extrinsic", {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}},
+           {"columns_per_frame", {frame}},
+           {"pixels_per_column", {static_cast<double>(count)}},
+           {"column_window", {0, frame - 1}},
+           {"azimuth_window", {0, 360000}},
+           {"signal_multiplier", {1}}})
+    if (const auto given = file.find(name)) file.require(*given, name, needed, *rule_of(detail::ouster_rules, name));
   return sensor;
 }
 

@@ -37,10 +37,22 @@ struct SpectrumFile {
 #include <limits>
 
 #include <pulsecast/io/detail/text/table.hpp>
+#include <pulsecast/io/format_rules.hpp>
 
 namespace PULSECAST_NAMESPACE::io {
 
 namespace detail {
+
+/// Keys of a header, and words that stand before `reflect` in units or titles, in small letters. Source: ECOSTRESS
+/// spectral library.
+inline constexpr auto spectrum_rules = std::to_array<FormatRule>({
+    {"x units:, y units:, units, titles", FormatUse::read, "units; titles are the last line above the numbers"},
+    {"angstrom, frequency, thz, energy, band, channel, index, first column: y", FormatUse::refused,
+     "wavelengths in nm, um or m, or wavenumbers in cm-1, in the first column"},
+    {"transmi, absor, emiss, radian, refractive, scatter", FormatUse::refused, "reflectance after the wavelength"},
+    {"10000", FormatUse::refused, "reflectance in fractions or percent"},
+    {"*", FormatUse::read, "nothing: other lines of a header"},
+});
 
 /// Unit of the first column.
 enum class WavelengthUnit : std::uint8_t { metre, micrometre, nanometre, wavenumber };
@@ -77,9 +89,6 @@ class SpectrumReader {
     while (table_.next()) row();
     if (samples_.empty()) table_.fail("holds no row of two numbers: expected wavelength and reflectance, side by side");
     if (!unit_ || !scale_) titles();
-    if (titles_.find("angstrom") != titles_.npos || titles_.find("frequency") != titles_.npos)
-      fail_at(table_.path(), titles_line_, text::quoted(titles_),
-              ": expected wavelengths in nm, um or m, or wavenumbers in cm-1");
     SpectrumFile file;
     const std::string wavelengths = take_wavelengths();
     file.report = warning(table_.path(), 0, wavelengths, "; ", take_reflectances(file.scale));
@@ -138,17 +147,31 @@ class SpectrumReader {
     titles_line_ = table_.line();
     const auto is_key = [&](std::string_view key) { return line.starts_with(key); };
     if (is_key("x units:")) unit_ = wavelength_unit_in(line);
+    if (is_key("x units:") || is_key("y units:") || is_key("units") || is_key("first column:"))
+      require_reflectance(text, table_.line());
     if (!is_key("y units:")) return;
     scale_ = reflectance_scale_in(line);
     scale_line_ = table_.line();
     if (line.find("reflect") == line.npos) table_.refuse(text, "a spectrum of reflectance");
   }
 
+  /// Refuses words of units and titles by the rules.
+  void require_reflectance(std::string_view text, std::size_t number) const {
+    const std::string line = text::lower(text);
+    const std::size_t wanted = line.find("reflect");
+    for (const FormatRule& rule : spectrum_rules)
+      for (std::string_view names = rule.name; rule.use == FormatUse::refused && !names.empty();) {
+        const std::size_t at = line.find(take_name(names));
+        if (at < wanted || (rule.name == "10000" && at != line.npos))
+          fail_at(table_.path(), number, text::quoted(text), ": expected ", rule.meaning);
+      }
+    if (wanted < line.find("wavelength") && line.find("wavelength") != line.npos)
+      fail_at(table_.path(), number, text::quoted(text), ": expected ", rule_of(spectrum_rules, "index")->meaning);
+  }
+
   /// Takes units from the line above the numbers if no key named them.
   void titles() {
-    for (const std::string_view other : {"transmit", "absor", "emiss"})
-      if (titles_.find(other) < titles_.find("reflect"))
-        fail_at(table_.path(), titles_line_, text::quoted(titles_), ": expected reflectance after the wavelength");
+    if (scale_line_ == 0) require_reflectance(titles_, titles_line_);
     if (!unit_) unit_ = wavelength_unit_in(titles_);
     if (scale_ || titles_.find("reflect") == titles_.npos) return;
     scale_ = reflectance_scale_in(titles_);

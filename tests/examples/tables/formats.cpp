@@ -11,11 +11,13 @@
 #include <pulsecast/io/detail/geotiff/rules.hpp>
 #include <pulsecast/io/detail/las/rules.hpp>
 #include <pulsecast/io/detail/mesh_file/mesh_rules.hpp>
+#include <pulsecast/io/detail/packets/rules.hpp>
 #include <pulsecast/io/detail/ply/rules.hpp>
 #include <pulsecast/io/detail/ptx/points.hpp>
 #include <pulsecast/io/detail/raster_rules.hpp>
 #include <pulsecast/io/detail/reference_reader.hpp>
 #include <pulsecast/io/detail/trajectory/rules.hpp>
+#include <pulsecast/io/spectral_library.hpp>
 #include <pulsecast/io/vox.hpp>
 
 using namespace pulsecast::io;
@@ -37,6 +39,9 @@ int main() {
   print("points: PLY, named columns", detail::point_rules);
   print("PTX", detail::ptx_rules);
   print("DAE, FBX", detail::mesh_rules);
+  print("OBJ", detail::obj_rules);
+  print("MTL", detail::mtl_rules);
+  print("CityGML", detail::city_rules);
   print("AMAPVox", detail::vox_rules);
   print("GeoTIFF", detail::geotiff_rules);
   print("ASCII grid", detail::ascii_grid_rules);
@@ -44,4 +49,7 @@ int main() {
   print("beside a raster", detail::side_file_rules);
   print("reference system", detail::reference_rules);
   print("trajectory", detail::trajectory_rules);
+  print("spectrum", detail::spectrum_rules);
+  print("Velodyne calibration", detail::velodyne_rules);
+  print("Ouster metadata", detail::ouster_rules);
 }

@@ -268,6 +268,10 @@ TEST_CASE("axes to the west are noted once, by a code, a method or the text, wit
       CHECK(coded(code).empty());
   }
   CHECK(by_keys({{{3072, 0, 1, 32767}, {3075, 0, 1, 27}, {3076, 0, 1, 9001}}}).warnings.size() == 1);
+  CHECK(by_keys({{{3072, 0, 1, 2053}, {3076, 0, 1, 9001}},
+                 {},
+                 "ESRI PE String = " + begin + "Transverse_Mercator_South_Orientated\"]" + end + "]|"})
+            .warnings.size() == 1);
   CHECK(esri("Transverse_Mercator_South_Orientated\"]").size() == 1);
   CHECK(esri("Krovak\"],PARAMETER[\"XY_Plane_Rotation\",0.0]").size() == 1);
   CHECK(esri("Krovak\"],PARAMETER[\"XY_Plane_Rotation\",90.0]").empty());

@@ -11,28 +11,22 @@
 /// Reference systems in rasters, in files beside them, and in LAS files.
 namespace PULSECAST_NAMESPACE::io::detail {
 
-inline constexpr std::string_view on_the_globe =
-    "projected coordinates, not degrees or geocentric ones: gdalwarp -t_srs EPSG:CODE, or pdal translate with "
-    "filters.reprojection";
-
 /// Items of reference systems. Source: OGC GeoTIFF 1.1, annex B; OGC 01-009 and 18-010 (WKT).
 inline constexpr FormatRule reference_rules[]{
     {"WKT PROJ*", FormatUse::read, "projected: its unit is that of x and y"},
-    {"WKT LOCAL_CS", FormatUse::read, "its unit is that of x and y"},
-    {"WKT ENG*", FormatUse::read, "its unit is that of x and y"},
+    {"WKT LOCAL_CS, WKT ENG*", FormatUse::read, "its unit is that of x and y"},
     {"WKT VERT*", FormatUse::read, "its unit is that of heights"},
-    {"WKT GEO*", FormatUse::refused, on_the_globe},
+    {"WKT GEO*, GeoKey 1024 = 2, GeoKey 1024 = 3", FormatUse::refused,
+     "projected coordinates, not degrees or geocentric ones: gdalwarp -t_srs EPSG:CODE, or pdal translate with "
+     "filters.reprojection"},
     {"GeoKey 1024 = 1", FormatUse::read, "GTModelType: projected coordinates"},
-    {"GeoKey 1024 = 2", FormatUse::refused, on_the_globe},
-    {"GeoKey 1024 = 3", FormatUse::refused, on_the_globe},
     {"GeoKey 1024 = *", FormatUse::noted, "a projected system is assumed"},
     {"GeoKey 1025", FormatUse::read, "GTRasterType: pixels are areas or points"},
     {"GeoKey 1026", FormatUse::read, "GTCitation: unit, as `(ftUS)`, or well-known text of Esri"},
-    {"GeoKey 20*", FormatUse::read, "geodetic base; coordinates stay in it"},
     {"GeoKey 3072", FormatUse::read, "ProjectedCRS: EPSG code"},
     {"GeoKey 3076", FormatUse::read, "ProjLinearUnits: coordinates become metres"},
     {"GeoKey 3077", FormatUse::read, "ProjLinearUnitSize: metres a unit of coordinates"},
-    {"GeoKey 30*", FormatUse::read, "parameters of a projection; coordinates stay in it"},
+    {"GeoKey 20*, GeoKey 30*", FormatUse::read, "geodetic base and parameters; coordinates stay in them"},
     {"GeoKey 4096", FormatUse::read, "Vertical: EPSG code"},
     {"GeoKey 4097", FormatUse::read, "VerticalCitation: name of the vertical system, and its unit"},
     {"GeoKey 4098", FormatUse::read, "VerticalDatum; heights stay in it"},
@@ -41,9 +35,8 @@ inline constexpr FormatRule reference_rules[]{
     {"unit of *", FormatUse::refused, "a known unit: gdal_edit.py -a_srs EPSG:CODE, or pdal's --a_srs, names one"},
     {"depths", FormatUse::refused, "heights, not depths; with a vertical scale as a setting its numbers are heights"},
     {"axis to the west", FormatUse::noted, "x is taken as east, and y as north"},
-    {"coordinates without a unit", FormatUse::noted, "metres are assumed"},
+    {"coordinates without a unit, no well-known text", FormatUse::noted, "metres are assumed"},
     {"heights without a unit", FormatUse::noted, "those of rasters are taken as metres, z of points in the unit of x"},
-    {"no well-known text", FormatUse::noted, "metres are assumed"},
     {"text that is cut off", FormatUse::refused, "a complete well-known text"},
 };
 
@@ -192,8 +185,7 @@ class ReferenceReader {
     made_.epsg = projected == GeoKeys::user_defined ? std::uint16_t{0} : projected;
     made_.vertical_epsg = vertical == GeoKeys::user_defined ? std::uint16_t{0} : vertical;
     has_heights_ = vertical != 0;
-    if (is_between(systems_to_the_west, projected) || keys.code(3075) == 27)  // Transverse Mercator, south oriented
-      keep("axis to the west");
+    is_west_ |= is_between(systems_to_the_west, projected) || keys.code(3075) == 27;  // South Orientated
     if (const auto told = unit_of(keys, 3076, 3077)) unit_ = told;
     if (const auto told = unit_of(keys, 4099, 0)) height_ = told;
     read_names(keys.text(1026).empty() ? keys.text(3073) : keys.text(1026), keys.text(4097));
@@ -228,24 +220,22 @@ class ReferenceReader {
     keep("WKT " + system.keyword);
     const bool is_vertical = system.keyword.starts_with("VERT");
     std::optional<double>& unit = is_vertical ? height_ : unit_;
-    bool is_west = false;
     std::string_view rest = system.content;
     while (const std::optional<WktNode> part = take_node(rest)) {
       if (part->keyword == "AXIS") {
         const std::string way = text::lower(part->after_name());
         if (way.starts_with("down")) keep_heights();
-        is_west |= way.starts_with("west");
+        is_west_ |= way.starts_with("west");
         std::string_view of_axis = part->content;
         while (const std::optional<WktNode> one = take_node(of_axis))
           if (one->keyword.ends_with("UNIT")) unit = unit_of(*one);
       }
       // Esri's texts have no axes: by these words, theirs go there
-      is_west |= part->content.starts_with("\"Transverse_Mercator_South") ||
-                 (part->content.starts_with("\"XY_Plane_Rotation") && part->after_name().starts_with('0'));
+      is_west_ |= part->content.starts_with("\"Transverse_Mercator_South") ||
+                  (part->content.starts_with("\"XY_Plane_Rotation") && part->after_name().starts_with('0'));
       if (part->keyword == "UNIT" || part->keyword == "LENGTHUNIT") unit = unit_of(*part);
       if (part->content.starts_with("\"Direction\"") && part->after_name().starts_with("-1")) keep_heights();
     }
-    if (is_west) keep("axis to the west");
   }
 
   void keep_heights() {
@@ -305,6 +295,7 @@ class ReferenceReader {
   }
 
   [[nodiscard]] SpatialReference finished() {
+    if (is_west_) keep("axis to the west");
     if (!unit_) keep("coordinates without a unit");
     made_.unit = unit_.value_or(1);
     if (!height_ && (made_.unit != 1 || has_heights_) && otherwise_ != HeightUnit::by_setting)
@@ -319,6 +310,7 @@ class ReferenceReader {
   SpatialReference made_;
   std::optional<double> unit_, height_;  ///< of coordinates and of heights [m]
   bool has_heights_ = false;             ///< the keys name a vertical system
+  bool is_west_ = false;                 ///< an axis goes to the west
 };
 
 }  // namespace PULSECAST_NAMESPACE::io::detail

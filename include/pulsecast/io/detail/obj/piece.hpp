@@ -30,18 +30,6 @@ class ObjPiece : private StatementBuffer {
 
   static constexpr std::size_t no_line = std::numeric_limits<std::size_t>::max();
 
-  /// Lines with the same oddity: their number, the first of them, and its text.
-  struct Notes {
-    std::size_t count = 0, line = no_line;
-    std::string text{};
-
-    void add(const Notes& more) {
-      const std::size_t all = count + more.count;
-      if (more.line < line) *this = more;
-      count = all;
-    }
-  };
-
   ObjPiece(const std::string& path, std::string text, std::size_t lines_before, bool textured = false)
       : StatementBuffer(path, std::move(text), lines_before), textured_(textured) {}
 
@@ -97,9 +85,7 @@ class ObjPiece : private StatementBuffer {
   std::vector<std::uint32_t> triangle_uses;  ///< index into `uses` for each triangle
   std::vector<std::array<Vec2, 3>> texture;  ///< texture coordinates of each triangle, if read
   std::vector<std::size_t> without_place;    ///< by use: corners without texture coordinates
-  std::vector<std::size_t> crossings;        ///< lines of polygons whose outline crosses itself
-  Notes unknown, flat, coloured;             ///< unknown statements, faces without an area, vertices with colours
-  std::size_t open_line = 0;                 ///< line of a last statement without end; 0: none
+  StatementNotes notes{obj_rules};
   struct {
     std::size_t line = no_line;
     std::exception_ptr error;
@@ -112,18 +98,16 @@ class ObjPiece : private StatementBuffer {
     std::uint32_t places_above;         ///< texture coordinates of this piece above it
   };
 
-  /// Statements of the OBJ specification (Wavefront 1995) that do not concern surfaces.
-  static constexpr std::array<std::string_view, 13> ignored{"vn", "vt", "vp", "vw",  "o",          "g",        "s",
-                                                            "l",  "p",  "mg", "lod", "shadow_obj", "trace_obj"};
-
   void check(std::string& ready) override {
     const std::vector<std::string_view>& given = words();
     if (keyword() == "v") {
       require(given.size() >= 3 && std::all_of(given.begin(), given.begin() + 3, number_in<double>),
               "three finite numbers, none beyond 1e12");
-      if (given.size() >= 6) coloured.add({1, line()});
+      if (given.size() >= 6) keep("v x y z r g b");
+      if ((given.size() == 4 || given.size() == 7) && given[3] != "1" && number_in<double>(given[3]) != 1)
+        keep("v x y z w");
     } else if (keyword() == "f" && given.size() < 3 && !line_is_open()) {
-      return flat.add({1, line()});
+      return notes.keep("f without area", path(), line(), "");
     } else if (keyword() == "f") {
       require(std::ranges::all_of(given, is_corner), "corners of the form v, v/t, v//n or v/t/n, in whole numbers");
       require(given.size() >= 3 && given.size() <= max_polygon_corners, "a face of 3 to 4096 corners");
@@ -134,13 +118,25 @@ class ObjPiece : private StatementBuffer {
     } else if (keyword() != "usemtl") {
       if (keyword() == "mtllib" && !given.empty()) {  // tinyobjloader reads only the first
         libraries.push_back({line(), quoted(), std::string(rest())});
-      } else if (std::find(ignored.begin(), ignored.end(), keyword()) == ignored.end()) {
-        unknown.add({1, line(), quoted()});
+      } else {
+        keep(keyword() == "mtllib" ? "*" : keyword());  // which names no file
       }
       return;
     }
-    if (line_is_open() && keyword() != "usemtl") open_line = line();
+    if (line_is_open() && keyword() != "usemtl") notes.keep("cut line", path(), line(), "");
     ready = statement();
+  }
+
+  void keep(std::string_view name) { notes.keep(name, path(), line(), statement()); }
+
+  /// Comments such as `# File units = inches` of SketchUp, and `# This file uses centimeters as units` of Maya.
+  void remark() override {
+    const std::string words = text::lower(statement());
+    const auto has = [&](auto... parts) { return ((words.find(parts) != words.npos) || ...); };
+    if (has("unit") && has("inch", "feet", "foot", "yard", "centi", "milli", "kilo", " cm", " mm", " km", " ft"))
+      keep("# unit");
+    for (const std::string_view part : {"offset", "shift"})
+      if (words.find_first_of("123456789", words.find(part)) != words.npos) keep("# offset");
   }
 
   static bool is_corner(std::string_view word) {
@@ -211,13 +207,13 @@ class ObjPiece : private StatementBuffer {
     const auto pieces = triangulated(positions_);
     for (const auto& [a, b, c] : pieces) triangle(face, a, b, c);
     if (!pieces.empty()) return;
-    crossings.push_back(face.line);
+    notes.keep("f that crosses itself", path(), face.line, "");
     for (std::size_t k = 2; k < numbers_.size(); ++k) triangle(face, 0, k - 1, k);
   }
 
   void triangle(const Face& face, std::size_t a, std::size_t b, std::size_t c) {
     const Vec3 area = cross(positions_[b] - positions_[a], positions_[c] - positions_[a]);
-    if (area == Vec3{0, 0, 0}) return flat.add({1, face.line});
+    if (area == Vec3{0, 0, 0}) return notes.keep("f without area", path(), face.line, "");
     triangles.push_back({numbers_[a], numbers_[b], numbers_[c]});
     triangle_uses.push_back(face.use);
     if (textured_) texture.push_back({face_places_[a], face_places_[b], face_places_[c]});

@@ -23,11 +23,7 @@ class ObjReader {
 
   [[nodiscard]] ObjModel read() {
     while (read_window()) continue;
-    if (open_line_ > 0) warn(open_line_, "the last line has no line end: the file may be truncated");
-    if (unknown_.count > 0)
-      warn(unknown_.line, unknown_.text, " is not known and left out, the first of ", unknown_.count);
-    if (flat_.count > 0) warn(flat_.line, "a face without area is left out, the first of ", flat_.count);
-    if (coloured_.count > 0) warn(coloured_.line, "colours of vertices have no effect, pictures and MTL files do");
+    notes_.tell(file_.path(), model_.warnings);
     if (model_.mesh.triangles.empty())
       warn(0, "holds no face with an area: expected at least one 'f' statement of such a one");
     resolve_materials();
@@ -67,18 +63,11 @@ class ObjReader {
   }
 
   void add(ObjPiece& piece) {
-    auto crossing = piece.crossings.begin();
-    const auto warn_before = [&](std::size_t line) {
-      for (; crossing != piece.crossings.end() && *crossing < line; ++crossing)
-        warn(*crossing, "the outline of the polygon crosses itself: it becomes a fan about its first corner");
-    };
     for (const ObjPiece::Libraries& statement : piece.libraries) {
       if (statement.line > piece.failure.line) break;
-      warn_before(statement.line);
       libraries(statement);
     }
     if (piece.failure.error) std::rethrow_exception(piece.failure.error);
-    warn_before(ObjPiece::no_line);
 
     piece.uses.front() = use_;
     MeshData& mesh = model_.mesh;
@@ -88,10 +77,7 @@ class ObjReader {
       without_place_[piece.uses[use].name] += piece.without_place[use];
     for (const std::uint32_t use : piece.triangle_uses) mesh.materials.push_back(material(piece.uses[use]));
     use_ = piece.uses.back();
-    unknown_.add(piece.unknown);
-    flat_.add(piece.flat);
-    coloured_.add(piece.coloured);
-    open_line_ = std::max(open_line_, piece.open_line);
+    notes_.add(piece.notes);
   }
 
   /// Number of a material in use, assigned when a triangle first needs it.
@@ -164,9 +150,8 @@ class ObjReader {
   Use use_;                                                        // in force
   std::vector<Use> uses_;                                          // in use by triangles
   std::map<std::string, std::uint32_t> numbers_;                   // indices into `uses_` by name
-  ObjPiece::Notes unknown_, flat_, coloured_;
+  StatementNotes notes_{obj_rules};
   std::map<std::string, std::size_t> without_place_;  // corners, by material
-  std::size_t open_line_ = 0;
 };
 
 }  // namespace detail

@@ -7,7 +7,7 @@
 
 #include <tiny_obj_loader.h>
 
-#include <pulsecast/io/input_file.hpp>
+#include <pulsecast/io/detail/mesh_file/mesh_rules.hpp>
 
 /// Statements of OBJ and MTL files.
 namespace PULSECAST_NAMESPACE::io::detail {
@@ -23,6 +23,39 @@ template <class Number>
   const std::optional<Number> value = word.size() <= 100 ? text::number_in<Number>(word) : std::nullopt;
   return value && std::isfinite(static_cast<double>(*value)) ? value : std::nullopt;
 }
+
+/// Statements that are noted by rules: for each rule their number, and the first of them.
+class StatementNotes {
+ public:
+  explicit StatementNotes(std::span<const FormatRule> rules) : rules_(rules) {}
+
+  /// Keeps to the rule for a statement. @throws FileError for one that is refused
+  void keep(std::string_view name, const std::string& path, std::size_t line, std::string_view statement) {
+    const FormatRule* const rule = rule_of(rules_, name);
+    if (rule->use == FormatUse::refused) fail_at(path, line, text::quoted(statement), ": expected ", rule->meaning);
+    if (rule->use != FormatUse::noted) return;
+    Note& note = notes_[rule];
+    if (++note.count == 1 || line < note.line) note = {note.count, line, std::string(statement)};
+  }
+  /// Adds the notes of a later part of the file.
+  void add(const StatementNotes& more) {
+    for (const auto& [rule, note] : more.notes_)
+      if (const auto [known, is_new] = notes_.try_emplace(rule, note); !is_new) known->second.count += note.count;
+  }
+  void tell(const std::string& path, std::vector<std::string>& warnings) const {
+    for (const auto& [rule, note] : notes_)
+      warnings.push_back(warning(path, note.line, note.text.empty() ? "" : text::quoted(note.text) + ": ",
+                                 rule->meaning, ", the first of ", note.count));
+  }
+
+ private:
+  struct Note {
+    std::size_t count = 0, line = 0;
+    std::string text{};
+  };
+  std::span<const FormatRule> rules_;
+  std::map<const FormatRule*, Note> notes_;
+};
 
 /// Text of an OBJ or MTL file, read in pieces.
 class StatementFile : public InputFile {
@@ -73,6 +106,8 @@ class StatementBuffer : public std::streambuf {
  protected:
   /// Sets `ready`, empty at first, to the current statement for tinyobjloader. @throws FileError
   virtual void check(std::string& ready) = 0;
+  /// Called for each comment.
+  virtual void remark() {}
 
   [[nodiscard]] const std::string& path() const { return path_; }
   [[nodiscard]] std::size_t line() const { return line_; }                   ///< its first line, from 1
@@ -106,6 +141,7 @@ class StatementBuffer : public std::streambuf {
   bool next_statement() {
     do {
       if (!take_statement()) return false;
+      if (statement_.starts_with('#')) remark();
     } while (statement_.empty() || statement_.starts_with('#'));
     if (statement_.find('#') != statement_.npos && !keyword().ends_with("mtl"))  // not in `usemtl Material #25`
       statement_.resize(std::min(statement_.find(" #"), statement_.size()));

@@ -5,7 +5,7 @@
 
 #include <yaml-cpp/yaml.h>
 
-#include <pulsecast/io/input_file.hpp>
+#include <pulsecast/io/format_rules.hpp>
 
 namespace PULSECAST_NAMESPACE::io::detail {
 
@@ -40,8 +40,17 @@ class CalibrationFile {
     fail(parent, "has no " + key);
   }
 
-  /// Map of a name in the root, of a file with sections; the root itself of one without.
-  [[nodiscard]] YAML::Node section(const std::string& key) const { return find(root_, key).value_or(root_); }
+  /// Value of a key of the root, or else of a section, a map in it; empty if there is none.
+  [[nodiscard]] std::optional<YAML::Node> find(const std::string& key) const {
+    std::optional<YAML::Node> found = find(root_, key);
+    for (const auto& section : root_)
+      if (!found && section.second.IsMap()) found = find(section.second, key);
+    return found;
+  }
+  [[nodiscard]] YAML::Node at(const std::string& key) const {
+    if (std::optional<YAML::Node> node = find(key)) return *node;
+    fail(root_, "has no " + key);
+  }
 
   /// Text of a scalar, which is called `name` in messages. @throws FileError for anything else
   [[nodiscard]] std::string word(const YAML::Node& node, const std::string& name) const {
@@ -68,6 +77,17 @@ class CalibrationFile {
     std::vector<double> values;
     for (const YAML::Node& value : node) values.push_back(number(value, name, low, high));
     return values;
+  }
+
+  /// Keeps to the rule for a key that is refused but for one number or list, within 1e-6. @throws FileError
+  void require(const YAML::Node& node, const std::string& name, const std::vector<double>& needed,
+               const FormatRule& rule) const {
+    constexpr double any = 1e12;
+    const std::vector<double> given =
+        node.IsSequence() ? numbers(node, name, needed.size(), -any, any) : std::vector{number(node, name, -any, any)};
+    const auto is_near = [](double a, double b) { return std::abs(a - b) <= 1e-6; };
+    if (!std::ranges::equal(given, needed, is_near))
+      fail(node, name, " is ", text::quoted(node.IsScalar() ? node.Scalar() : "a list"), ": expected ", rule.meaning);
   }
 
   /// @throws FileError about a node

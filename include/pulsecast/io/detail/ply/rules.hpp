@@ -9,15 +9,14 @@ namespace PULSECAST_NAMESPACE::io::detail {
 
 /// Elements of PLY files where a mesh is expected, and their properties by canonical names; other properties have no
 /// influence on a mesh. Source: Turk 1994, The PLY polygon file format; Stanford 3D Scanning Repository.
-inline constexpr std::array<FormatRule, 19> ply_mesh_rules{{
+inline constexpr std::array<FormatRule, 17> ply_mesh_rules{{
     {"vertex", FormatUse::read, "places `x`, `y`, `z`"},
     {"vertex u", FormatUse::read, "texture coordinates `u`, `v` or `s`, `t`"},
-    {"vertex red", FormatUse::noted, "colours of vertices have no effect, pictures and MTL files do"},
-    {"vertex classification", FormatUse::noted, "classes are those of materials, from an MTL file"},
+    {"vertex red, face red", FormatUse::noted, "colours have no effect, pictures and MTL files do"},
+    {"vertex classification, face classification", FormatUse::noted,
+     "classes are those of materials, from an MTL file"},
     {"face", FormatUse::read, "polygons, by the list `vertex_indices`"},
     {"face texcoord", FormatUse::read, "texture coordinates of the corners"},
-    {"face red", FormatUse::noted, "colours of faces have no effect, pictures and MTL files do"},
-    {"face classification", FormatUse::noted, "classes are those of materials, from an MTL file"},
     {"face material_index", FormatUse::noted, "all faces have one material, named default"},
     {"tristrips", FormatUse::read, "strips of triangles, which end at negative numbers"},
     {"range_grid", FormatUse::refused, "faces, as meshing programs make them of grids; xyzloader reads the points"},
@@ -32,10 +31,9 @@ inline constexpr std::array<FormatRule, 19> ply_mesh_rules{{
 }};
 
 /// Elements of PLY files where points are expected.
-inline constexpr std::array<FormatRule, 9> ply_cloud_rules{{
+inline constexpr std::array<FormatRule, 8> ply_cloud_rules{{
     {"vertex", FormatUse::read, "points, with columns as below"},
-    {"face", FormatUse::noted, "faces have no effect: a mesh loader reads them"},
-    {"tristrips", FormatUse::noted, "strips have no effect: a mesh loader reads them"},
+    {"face, tristrips", FormatUse::noted, "surfaces have no effect: a mesh loader reads them"},
     {"range_grid", FormatUse::read, "grid of the points"},
     {"camera", FormatUse::noted, "points are not moved by the pose of a camera"},
     {"comment offset", FormatUse::noted, "points are not moved: a translation of the part moves them"},
