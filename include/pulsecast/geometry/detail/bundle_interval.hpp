@@ -182,11 +182,14 @@ class RayInterval {
     const Axes slowness = Axes(1) / simd::max(magnitude(direction), least), per = with_sign(slowness, direction);
     const Axes start = o * per, start_in = margin * slowness + start, start_out = margin * slowness - start;
     simd::store(per, maps_.per[0]);
+    const WallBytes& walls = walls_by_signs[signs(direction) & 7];
+#pragma GCC unroll 3
     for (std::size_t k = 0; k < 3; ++k) {
+      maps_.walls.entry[k] = walls.entry[k];
+      maps_.walls.exit[k] = walls.exit[k];
       maps_.start_in[k] = start_in[k] - Packet{};
       maps_.start_out[k] = start_out[k] - Packet{};
     }
-    maps_.walls = walls_by_signs[signs(direction) & 7];
     const auto both = from_middle + toward;
     const double valid = 0 * (both[0] + both[1] + both[2]);  // NaN for infinity and NaN: such rays miss
     maps_.near = (static_cast<Real>(ray.near * (1 - tolerance) + valid) + Real{0}) - Packet{};  // no -0
@@ -202,6 +205,7 @@ class RayInterval {
     const RayInterval* from = this;
     asm("" : "+r"(from));
     RayInterval copy;
+#pragma GCC unroll 3
     for (std::size_t k = 0; k < 3; ++k) {
       copy.maps_.start_in[k] = from->maps_.start_in[k];
       copy.maps_.start_out[k] = from->maps_.start_out[k];
