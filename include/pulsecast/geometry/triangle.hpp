@@ -107,6 +107,18 @@ struct EdgePlanes {
     doubt =
         (magnitude(ex) + magnitude(ey) + magnitude(ez)) * (magnitude(sx) + magnitude(sy) + magnitude(sz)) * tolerance;
   }
+
+  // bounds of the side of all rays of a bundle; always inlined, as products are then shared
+  [[nodiscard, gnu::always_inline]] simd::Doubles most(const auto& rays) const noexcept {
+    return simd::max(x * rays.direction_min(0), x * rays.direction_max(0)) +
+           simd::max(y * rays.direction_min(1), y * rays.direction_max(1)) +
+           simd::max(z * rays.direction_min(2), z * rays.direction_max(2));
+  }
+  [[nodiscard, gnu::always_inline]] simd::Doubles least(const auto& rays) const noexcept {
+    return simd::min(x * rays.direction_min(0), x * rays.direction_max(0)) +
+           simd::min(y * rays.direction_min(1), y * rays.direction_max(1)) +
+           simd::min(z * rays.direction_min(2), z * rays.direction_max(2));
+  }
 };
 
 /// Bit mask of the triangles that a single ray's line may hit, idle lanes included.
@@ -159,24 +171,15 @@ template <class Rays, class Hits, class Solid = detail::SolidEverywhere>
   unsigned candidates = (1U << primitives.size()) - 1;
 
   // no ray is inside where all pass one plane on its right and one on its left; once more rounding
-  const auto most = [&](const detail::EdgePlanes& p) noexcept {
-    return simd::max(p.x * rays.direction_min(0), p.x * rays.direction_max(0)) +
-           simd::max(p.y * rays.direction_min(1), p.y * rays.direction_max(1)) +
-           simd::max(p.z * rays.direction_min(2), p.z * rays.direction_max(2));
-  };
-  const auto least = [&](const detail::EdgePlanes& p) noexcept {
-    return simd::min(p.x * rays.direction_min(0), p.x * rays.direction_max(0)) +
-           simd::min(p.y * rays.direction_min(1), p.y * rays.direction_max(1)) +
-           simd::min(p.z * rays.direction_min(2), p.z * rays.direction_max(2));
-  };
   if constexpr (single) {
     candidates &= certain != 0 ? certain : detail::on_one_side(triangles, rays);
   } else {
     ab = detail::EdgePlanes(a, b, rays.direction_length);
     bc = detail::EdgePlanes(b, c, rays.direction_length);
     ca = detail::EdgePlanes(c, a, rays.direction_length);
-    candidates &= simd::bits(((most(ab) >= -4 * ab.doubt) & (most(bc) >= -4 * bc.doubt) & (most(ca) >= -4 * ca.doubt)) |
-                             ((least(ab) <= 4 * ab.doubt) & (least(bc) <= 4 * bc.doubt) & (least(ca) <= 4 * ca.doubt)));
+    candidates &= simd::bits(
+        ((ab.most(rays) >= -4 * ab.doubt) & (bc.most(rays) >= -4 * bc.doubt) & (ca.most(rays) >= -4 * ca.doubt)) |
+        ((ab.least(rays) <= 4 * ab.doubt) & (bc.least(rays) <= 4 * bc.doubt) & (ca.least(rays) <= 4 * ca.doubt)));
   }
   if (candidates == 0) return;
 
@@ -255,9 +258,9 @@ template <class Rays, class Hits, class Solid = detail::SolidEverywhere>
     }
   } else {
     // triangles that all rays hit between the edges, certainly
-    const unsigned around =
-        simd::bits(((least(ab) > 4 * ab.doubt) & (least(bc) > 4 * bc.doubt) & (least(ca) > 4 * ca.doubt)) |
-                   ((most(ab) < -4 * ab.doubt) & (most(bc) < -4 * bc.doubt) & (most(ca) < -4 * ca.doubt)));
+    const unsigned around = simd::bits(
+        ((ab.least(rays) > 4 * ab.doubt) & (bc.least(rays) > 4 * bc.doubt) & (ca.least(rays) > 4 * ca.doubt)) |
+        ((ab.most(rays) < -4 * ab.doubt) & (bc.most(rays) < -4 * bc.doubt) & (ca.most(rays) < -4 * ca.doubt)));
     for (; candidates != 0; candidates &= candidates - 1) {
       const auto t = static_cast<std::size_t>(std::countr_zero(candidates));
       const PrimitiveIndex primitive = primitives[t];
