@@ -118,7 +118,7 @@ class ObjPiece : private StatementBuffer {
     } else if (keyword() != "usemtl") {
       if (keyword() == "mtllib" && !given.empty()) {  // tinyobjloader reads only the first
         libraries.push_back({line(), quoted(), std::string(rest())});
-      } else {
+      } else if (keyword() != "vn") {                   // of which there are many
         keep(keyword() == "mtllib" ? "*" : keyword());  // which names no file
       }
       return;
