@@ -758,6 +758,7 @@ TEST_CASE("each rule has a file that is read, noted or refused as it says") {
       {"item description", [&] { return tell(told(item("description", "heights"))); }},
       {"item scale_factor, add_offset",
        [&] { return tell(told("<Item name=\"scale_factor\" sample=\"0\">0.01</Item>")); }},
+      {"item positive = down", [&] { return tell(told("<Item name=\"Band1#positive\">down</Item>")); }},
       {"mask",
        [&] {
          const GeoTiff found = file.read({.masked = 1});

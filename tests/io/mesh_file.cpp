@@ -360,6 +360,12 @@ TEST_CASE("materials of glTF: colour, glass, mirrors, facets, and a reflectance 
   CHECK(pane.reflectance == doctest::Approx(0.125));
   CHECK_FALSE(material(pbr(R"("baseColorFactor":[1,1,1,0.25],"metallicFactor":0)"))
                   .smooth.passes_light());  // opaque by the mode
+  const Material hidden =
+      material(pbr(R"("baseColorFactor":[1,1,1,0.25],"metallicFactor":0)") + R"(,"alphaMode":"MASK")");
+  CHECK(hidden.reflectance == 0);  // below the cutoff, with any picture
+  CHECK(hidden.smooth.passes_light());
+  CHECK_FALSE(material(pbr(R"("baseColorFactor":[1,1,1,0.75],"metallicFactor":0)") + R"(,"alphaMode":"MASK")")
+                  .smooth.passes_light());
   const Material glass = material(pbr(R"("metallicFactor":0)") +
                                   R"(,"extensions":{"KHR_materials_transmission":{"transmissionFactor":1}})");
   CHECK(glass.smooth.kind == InterfaceKind::dielectric);

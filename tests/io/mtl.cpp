@@ -335,7 +335,7 @@ TEST_CASE("keys of an MTL file are read, noted and refused by the rules") {
   add("map_*", "map_Bump a.png", 1);
   add("*", "helios_reflectanc 0.1", 1);
   test::check_rules(io::detail::mtl_rules, cases);
-  for (const char* key : {"d -halo 0.5", "d 0", "Tf spectral glass.rfl", "Ni xyz", "Pr 0.1"}) {
+  for (const char* key : {"d -halo 0.5", "d 0", "Tf spectral glass.rfl", "Ni xyz", "illum 12", "Pr 0.1"}) {
     CAPTURE(key);
     CHECK(mtl("newmtl a\n" + std::string(key) + "\n").warnings.size() == 1);
   }

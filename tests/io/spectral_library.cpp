@@ -119,6 +119,8 @@ TEST_CASE("headers of spectra are read and refused by the rules") {
   add("radian", "units= Radiance, Radiance\ndata=");
   add("refractive", "wavelength, refractive n");
   add("10000", "wavelength (nm), reflectance * 10000");
+  add("log(", "Wavelength nm, log(1/R)");
+  add("mille", "nm, reflectance (per mille)");
   add("scatter", "Y Units: Backscatter");
   test::check_rules(io::detail::spectrum_rules, cases);
   for (const char* head : {"Reflectance, Wavelength", "wavelength irradiance", "Y Units: Gloss"})

@@ -161,7 +161,7 @@ class CityGmlImport {
     std::optional<std::uint16_t> system;
     for (std::string_view rest = file.text(); !rest.empty();) {
       rest.remove_prefix(std::min(rest.find('<'), rest.size() - 1) + 1);
-      std::string_view tag = rest.substr(0, rest.find('>'));
+      std::string_view tag = rest.substr(0, rest.find_first_of("<>"));
       std::string_view name = text::take_word(tag, " \t\r\n/");
       name.remove_prefix(name.find(':') + 1);
       if (rule_of(city_rules, name)->name != "*") keep(name);

@@ -31,6 +31,18 @@ namespace detail {
   return first;
 }
 
+/// Kind of a comment in a mesh or cloud: `unit`, as of SketchUp (`File units = inches`) and Maya (`uses centimeters as
+/// units`), `offset`, as of CloudCompare (`Global shift: -500000 0 0`), or empty.
+[[nodiscard]] inline std::string_view kind_of_comment(std::string_view comment) {
+  const std::string words = text::lower(comment);
+  const auto has = [&](auto... parts) { return ((words.find(parts) != words.npos) || ...); };
+  if (has("unit") && has("inch", "feet", "foot", "yard", "centi", "milli", "kilo", " cm", " mm", " km", " ft"))
+    return "unit";
+  for (const std::string_view part : {"offset", "shift"})
+    if (words.find_first_of("123456789", words.find(part)) != words.npos) return "offset";
+  return "";
+}
+
 }  // namespace detail
 
 /// First rule for an item, or null.

@@ -87,6 +87,7 @@ class MtlReader : private StatementBuffer {
     const auto share = given.empty() ? std::nullopt : number_in<double>(given[0]);
     const bool is_clear = (keyword() == "d" && share != 1.0) || (keyword() == "Tr" && share != 0.0);
     notes_.keep(!is_clear ? keyword() : keyword() == "d" ? "d below 1" : "Tr above 0", path(), line(), statement());
+    const bool is_light = rule_of(mtl_rules, keyword()) == rule_of(mtl_rules, "illum");
     const bool is_colour = keyword() == "Kd" || keyword() == "Ks";
     const auto is_beyond = [&](std::string_view word) {
       return number_in<double>(word).value_or(0) > 1 || (!is_colour && word.starts_with('-'));
@@ -98,9 +99,9 @@ class MtlReader : private StatementBuffer {
     else if (keyword() == "Ns")
       ready += standard_numbers(given, 1);
     // with textures, tinyobjloader would change the colour, depending on the order
-    else if (is_light_key(keyword()) && !share)
-      note("is ignored: expected numbers");
-    else if (is_light_key(keyword()) || keyword().starts_with("helios_") || keyword().starts_with("pulsecast_"))
+    else if (is_light && (!share || (keyword() == "illum" && *share > 10)))
+      note("is ignored: expected numbers, of illum from 0 to 10");
+    else if (is_light || keyword().starts_with("helios_") || keyword().starts_with("pulsecast_"))
       ready += statement();
   }
 

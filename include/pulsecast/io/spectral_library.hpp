@@ -49,8 +49,9 @@ inline constexpr auto spectrum_rules = std::to_array<FormatRule>({
     {"x units:, y units:, units, titles", FormatUse::read, "units; titles are the last line above the numbers"},
     {"angstrom, frequency, thz, energy, band, channel, index, first column: y", FormatUse::refused,
      "wavelengths in nm, um or m, or wavenumbers in cm-1, in the first column"},
-    {"transmi, absor, emiss, radian, refractive, scatter", FormatUse::refused, "reflectance after the wavelength"},
-    {"10000", FormatUse::refused, "reflectance in fractions or percent"},
+    {"transmi, absor, emiss, radian, refractive, scatter, log(", FormatUse::refused,
+     "reflectance after the wavelength"},
+    {"10000, mille", FormatUse::refused, "reflectance in fractions or percent"},
     {"*", FormatUse::read, "nothing: other lines of a header"},
 });
 
@@ -162,7 +163,7 @@ class SpectrumReader {
     for (const FormatRule& rule : spectrum_rules)
       for (std::string_view names = rule.name; rule.use == FormatUse::refused && !names.empty();) {
         const std::size_t at = line.find(take_name(names));
-        if (at < wanted || (rule.name == "10000" && at != line.npos))
+        if (at < wanted || (rule.name.starts_with("10000") && at != line.npos))
           fail_at(table_.path(), number, text::quoted(text), ": expected ", rule.meaning);
       }
     if (wanted < line.find("wavelength") && line.find("wavelength") != line.npos)

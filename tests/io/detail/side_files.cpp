@@ -67,6 +67,7 @@ TEST_CASE("each rule of the files beside a raster has one that is read, noted or
           {"<GeodataXform",
            element("<Metadata domain=\"xml:ESRI\"><GeodataXform xsi:type='typens:PolynomialXform'/></Metadata>")},
           {"<NoDataValue", element("<PAMRasterBand band=\"1\"><NoDataValue>0</NoDataValue></PAMRasterBand>")},
+          {"<UnitType>", element("<PAMRasterBand band=\"1\"><UnitType>ft</UnitType></PAMRasterBand>")},
           {"<Offset>", element("<PAMRasterBand band=\"1\"><Offset>5</Offset></PAMRasterBand>")},
           {"<Scale>", element("<PAMRasterBand band=\"1\"><Scale>0.01</Scale></PAMRasterBand>")}});
 }

@@ -33,12 +33,13 @@ inline constexpr std::array<FormatRule, 5> png_rules{{
 
 /// Files beside a raster: its reference system, and elements of GDAL's `.aux.xml`. Source: OGC 01-009; GDAL manual,
 /// Persistent Auxiliary Metadata.
-inline constexpr std::array<FormatRule, 7> side_file_rules{{
+inline constexpr std::array<FormatRule, 8> side_file_rules{{
     {"reference system", FormatUse::read, "`.prj`, or `<SRS>` of `.aux.xml`: coordinates and heights become metres"},
     {"<GeoTransform>", FormatUse::refused, "the place in the raster or a world file: gdal_translate writes it there"},
     {"<GCPList", FormatUse::refused, "a raster placed by rows and columns: gdalwarp makes one of control points"},
     {"<GeodataXform", FormatUse::refused, "a raster placed by rows and columns: gdalwarp makes one"},
     {"<NoDataValue", FormatUse::refused, "missing heights told by the raster: gdal_translate to GeoTIFF writes them"},
+    {"<UnitType>", FormatUse::noted, "heights have the unit that the raster or its reference system tells, or metres"},
     {"<Offset>", FormatUse::refused, "an offset in the raster: gdal_translate to GeoTIFF writes it"},
     {"<Scale>", FormatUse::refused, "a scale in the raster: gdal_translate to GeoTIFF writes it"},
 }};

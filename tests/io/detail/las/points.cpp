@@ -340,6 +340,7 @@ TEST_CASE("each item of the table is read, noted or refused as it says") {
     };
   };
   const LasBuilder::Record wkt{"LASF_Projection", 2112, projected(R"(UNIT["foot",0.3048])")};
+  const LasBuilder::Record by_liblas{"liblas", 2112, projected(R"(UNIT["foot",0.3048])")};
   const std::string old = LasBuilder{.minor = 2, .format = 1, .points = {{.stored = {100, 100, 100}}}}.bytes();
   const std::string recent = LasBuilder{.minor = 4, .format = 6, .points = {{.stored = {100, 100, 100}}}}.bytes();
   const std::string waves = LasBuilder{.minor = 3, .format = 4, .points = {{.stored = {100, 100, 100}}}}.bytes();
@@ -380,6 +381,7 @@ TEST_CASE("each item of the table is read, noted or refused as it says") {
           {"steps below 1e-5", warnings_of(LasBuilder{.scale = {1e-7, 1e-7, 1e-3}, .points = {{}}}.bytes())},
           {"LASF_Projection 2111", warnings_of(at_one({{"LASF_Projection", 2111, "PARAM_MT[\"x\"]"}}).bytes())},
           {"LASF_Projection 2112", gives(at_one({wkt}).bytes(), feet)},
+          {"liblas 2112", gives(at_one({by_liblas}).bytes(), feet)},
           {"LASF_Projection 34735", gives(with_keys({{3076, 9002}}), feet)},
           {"LASF_Projection 34736", gives(at_one({{"LASF_Projection", 34736, "12345678"}}).bytes(), one)},
           {"LASF_Projection 34737", gives(at_one({{"LASF_Projection", 34737, "UTM|"}}).bytes(), one)},

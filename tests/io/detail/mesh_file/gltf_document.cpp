@@ -367,6 +367,11 @@ TEST_CASE("each feature of glTF is read, noted or refused by its rule") {
        }},
       {"CESIUM_RTC",
        [&] { return warnings(triangle({.file = R"("extensions":{"CESIUM_RTC":{"center":[1,2,3]}},)"})); }},
+      {"normalTexture",
+       [&] {
+         return warnings(triangle({.file = R"("textures":[{"source":0}],"images":[{"uri":"a.png"}],)",
+                                   .material = R"(,"normalTexture":{"index":0})"}));
+       }},
       {"animations", [&] { return warnings(triangle({.file = R"("animations":[{"channels":[],"samplers":[]}],)"})); }},
       {"skins", [&] { return warnings(triangle({.node = R"(,"skin":0)", .file = R"("skins":[{"joints":[0]}],)"})); }},
       {"weights", [&] { return warnings(triangle({.node = R"(,"weights":[0,0.5])"})); }},

@@ -264,9 +264,17 @@ TEST_CASE("each row of the rules for meshes of PLY files is kept") {
       {"camera", with_element({"camera", {"float view_px"}, {{5}}})},
       picture,
       {"comment texturefile 2", with_remark("comment TextureFile a.png\ncomment TextureFile b.png")},
-      {"comment offset", with_remark("obj_info Offset: 500000 5400000 0")},
+      {"comment offset", with_remark("obj_info Global Shift: 500000 5400000 0")},
       {"comment transform*", with_remark("comment Transformation 1 0 0 0")},
-      {"comment unit*", with_remark("comment units mm")},
+      {"comment scale*", with_remark("obj_info scale 0.001")},
+      {"comment up", with_remark("comment up axis: Y")},
+      {"comment up_axis", with_remark("comment up_axis Y")},
+      {"comment unit*", with_remark("comment File units = inches")},
+      {"comment crs", with_remark("comment crs: EPSG:4326")},
+      {"comment epsg*", with_remark("comment EPSG:4326")},
+      {"comment srs", with_remark("comment srs WGS 84")},
+      {"vertex alpha", with_property(0, {"alpha"})},
+      {"face alpha", with_property(1, {"alpha"})},
       {"*", with_element({"flower", {"float petals"}, {{5}}})}};
   test::check_rules(detail::ply_mesh_rules, cases);
 }

@@ -149,7 +149,13 @@ TEST_CASE("each row of the rules for points of PLY files is kept") {
       {"camera", with_element({"camera", {"float view_px"}, {{5}}})},
       {"comment offset", with_remark("comment offset 1 2 3")},
       {"comment transform*", with_remark("obj_info transform 1 2 3")},
+      {"comment scale*", with_remark("obj_info scale 0.001")},
+      {"comment up", with_remark("comment up axis: Y")},
+      {"comment up_axis", with_remark("comment up_axis Y")},
       {"comment unit*", with_remark("comment Units: feet")},
+      {"comment crs", with_remark("comment crs: EPSG:4326")},
+      {"comment epsg*", with_remark("comment EPSG:4326")},
+      {"comment srs", with_remark("comment srs WGS 84")},
       {"*", with_element({"flower", {"float petals"}, {{5}}}, true)}};
   test::check_rules(detail::ply_cloud_rules, cases);
 }

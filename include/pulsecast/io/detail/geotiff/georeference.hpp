@@ -155,6 +155,7 @@ inline void set_item(TiffFile& file, BandItems& made, std::string_view role, std
     const std::string_view value = text::trimmed(all.substr(close + 1, all.find('<', close) - close - 1));
     is_named = is_named || (role.empty() && value != "1" && value != "0" &&
                             (name.ends_with("scale_factor") || name.ends_with("add_offset")));
+    if (name.ends_with("positive") && text::is_same_word(value, "down")) file.keep("item positive = down");
     if (!role.empty()) file.keep(text::message("item ", role));
     if (!role.empty() && of && *of < samples) set_item(file, made, role, value, *of + 1 == band, *of + std::size_t{1});
   }

@@ -8,7 +8,7 @@
 namespace PULSECAST_NAMESPACE::io::detail {
 
 /// Tags, images, bands and items of GDAL's metadata. Source: TIFF 6.0; GDAL manual, GTiff driver.
-inline constexpr std::array<FormatRule, 16> geotiff_rules{{
+inline constexpr std::array<FormatRule, 17> geotiff_rules{{
     {"item scale", FormatUse::read, "of the numbers of a band"},
     {"item offset", FormatUse::read, "of the numbers of a band, after the scale"},
     {"item unittype", FormatUse::read, "unit of heights"},
@@ -16,6 +16,7 @@ inline constexpr std::array<FormatRule, 16> geotiff_rules{{
     {"item colorinterp", FormatUse::read, "role of a band, as `Alpha`"},
     {"item description", FormatUse::read, "name of a band"},
     {"item scale_factor, add_offset", FormatUse::noted, "numbers are not scaled by items without a role"},
+    {"item positive = down", FormatUse::noted, "numbers are taken as heights, not as depths"},
     {"mask", FormatUse::read, "image, file `.msk` or alpha band: heights are missing where it is 0"},
     {"mask of another size", FormatUse::refused, "the raster's size: gdal_translate -mask none"},
     {"colours", FormatUse::refused, "heights, not a picture: gdal_translate -b BAND takes one"},

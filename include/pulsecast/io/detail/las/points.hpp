@@ -188,8 +188,8 @@ class LasPoints {
           head == 54 ? detail::las_number<std::uint16_t>(header, 20) : detail::las_number<std::uint64_t>(header, 20);
       const std::string body(
           file_.take(static_cast<std::size_t>(std::min<std::uint64_t>(size, InputFile::block_size))));
-      if (user == "LASF_Projection" || name == "lascompatible 22204") ask(name);
-      if (name == "LASF_Projection 2112") wkt_ = body.c_str();
+      if (user == "LASF_Projection" || name == "lascompatible 22204" || name == "liblas 2112") ask(name);
+      if (name == "LASF_Projection 2112" || name == "liblas 2112") wkt_ = body.c_str();
       if (name == "LASF_Projection 34735") keys_ = numbers_of<std::uint16_t>(body);
       if (name == "LASF_Projection 34736") key_numbers_ = numbers_of<double>(body);
       if (name == "LASF_Projection 34737") key_texts_ = body;

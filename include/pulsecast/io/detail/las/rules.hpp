@@ -21,7 +21,7 @@ inline constexpr FormatRule las_rules[]{
     {"two numbers of points", FormatUse::noted, "that of LAS 1.4 is taken, not the legacy one"},
     {"steps below 1e-5", FormatUse::noted, "metres are assumed, but without a reference system these may be degrees"},
     {"LASF_Projection 2111", FormatUse::refused, "points that need no transform (OGC Math Transform WKT)"},
-    {"LASF_Projection 2112", FormatUse::read, "reference system as well-known text, for its units"},
+    {"LASF_Projection 2112, liblas 2112", FormatUse::read, "reference system as well-known text, for its units"},
     {"LASF_Projection 34735, LASF_Projection 34736, LASF_Projection 34737", FormatUse::read,
      "reference system as GeoTIFF keys, if there is no text"},
     {"lascompatible 22204", FormatUse::noted, "classes above 31 are in extra bytes; laszip restores them"},

@@ -51,7 +51,8 @@ inline constexpr auto obj_rules = std::to_array<FormatRule>({
 
 /// Keys of MTL files. Source: MTL specification, Wavefront 1995; the extension for physically based shading; HELIOS++.
 inline constexpr auto mtl_rules = std::to_array<FormatRule>({
-    {"newmtl, Kd, Ks, Ns, illum, Ni, Tf, Pm", FormatUse::read, "[law of reflected light](surveys.md)"},
+    {"newmtl, Kd, Ks, Ns", FormatUse::read, "[law of reflected light](surveys.md)"},
+    {"illum, Ni, Tf, Pm", FormatUse::read, "[mirrors, glass and panes](surveys.md)"},
     {"map_Kd, map_d, pulsecast_reflectanceMap", FormatUse::read, "pictures of colours, outline and reflectance"},
     {"helios_reflectance, helios_spectra", FormatUse::read, "reflectance, or the spectrum of a library"},
     {"helios_isGround, helios_classification", FormatUse::read, "place for set-ups, and class of points"},
@@ -112,6 +113,7 @@ inline constexpr auto gltf_rules = std::to_array<FormatRule>({
      "pictures in KTX2, WebP, AVIF and DDS colour nothing and cut no outline"},
     {"COLOR_0", FormatUse::noted, "points do not get the colours of vertices"},
     {"CESIUM_RTC", FormatUse::noted, "the model is not moved to its place on the globe"},
+    {"normalTexture", FormatUse::noted, "surfaces are flat between their corners"},
     {"animations", FormatUse::noted, "nodes stand as without animation"},
     {"skins", FormatUse::noted, "meshes stand as modelled, not as their bones do"},
     {"weights", FormatUse::noted, "meshes have their shapes without morph targets"},

@@ -59,7 +59,9 @@ class MaterialImport {
     const std::string word = get<aiString>(AI_MATKEY_GLTF_ALPHAMODE).value_or(aiString()).C_Str();
     if (word == "BLEND") o.opacity = opacity;
     o.outlined = word == "BLEND" || word == "MASK";
-    if (word == "MASK" && opacity > 0) o.cutoff = get(AI_MATKEY_GLTF_ALPHACUTOFF).value_or(0.5F) / opacity;
+    const float cutoff = get(AI_MATKEY_GLTF_ALPHACUTOFF).value_or(0.5F);
+    if (word == "MASK" && opacity > 0) o.cutoff = cutoff / opacity;
+    if (word == "MASK" && opacity < cutoff) o.opacity = 0;
   }
 
   template <class Value = float>

@@ -14,11 +14,6 @@
 /// Keys of MTL files for light reflected or transmitted specularly.
 namespace PULSECAST_NAMESPACE::io::detail {
 
-/// True for a standard key among them.
-[[nodiscard]] inline bool is_light_key(std::string_view key) {
-  return key == "illum" || key == "Ni" || key == "Tf" || key == "Pm";
-}
-
 /// Expected words of an extra key, for a message; null if they are right, or the key is another.
 [[nodiscard]] inline const char* expected_words(std::string_view key, const std::vector<std::string_view>& words) {
   const std::size_t count = words.size();

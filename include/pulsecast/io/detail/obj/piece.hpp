@@ -103,7 +103,7 @@ class ObjPiece : private StatementBuffer {
     if (keyword() == "v") {
       require(given.size() >= 3 && std::all_of(given.begin(), given.begin() + 3, number_in<double>),
               "three finite numbers, none beyond 1e12");
-      if (given.size() >= 6) keep("v x y z r g b");
+      if (given.size() >= 5) keep("v x y z r g b");
       if ((given.size() == 4 || given.size() == 7) && given[3] != "1" && number_in<double>(given[3]) != 1)
         keep("v x y z w");
     } else if (keyword() == "f" && given.size() < 3 && !line_is_open()) {
@@ -118,7 +118,7 @@ class ObjPiece : private StatementBuffer {
     } else if (keyword() != "usemtl") {
       if (keyword() == "mtllib" && !given.empty()) {  // tinyobjloader reads only the first
         libraries.push_back({line(), quoted(), std::string(rest())});
-      } else {
+      } else if (keyword() != "vn") {                   // of which there are many
         keep(keyword() == "mtllib" ? "*" : keyword());  // which names no file
       }
       return;
@@ -129,14 +129,8 @@ class ObjPiece : private StatementBuffer {
 
   void keep(std::string_view name) { notes.keep(name, path(), line(), statement()); }
 
-  /// Comments such as `# File units = inches` of SketchUp, and `# This file uses centimeters as units` of Maya.
   void remark() override {
-    const std::string words = text::lower(statement());
-    const auto has = [&](auto... parts) { return ((words.find(parts) != words.npos) || ...); };
-    if (has("unit") && has("inch", "feet", "foot", "yard", "centi", "milli", "kilo", " cm", " mm", " km", " ft"))
-      keep("# unit");
-    for (const std::string_view part : {"offset", "shift"})
-      if (words.find_first_of("123456789", words.find(part)) != words.npos) keep("# offset");
+    if (const std::string_view kind = kind_of_comment(statement()); !kind.empty()) keep(text::message("# ", kind));
   }
 
   static bool is_corner(std::string_view word) {

@@ -57,8 +57,11 @@ class PlyFile {
       if (element.count > 0) keep("element", element.name, true);
       for (const auto& one : element.properties) keep("property", element.name + ' ' + one.name);
     }
-    for (const std::string& remark : remarks_)
-      keep("header line", "comment " + text::lower(remark.substr(0, remark.find_first_of(" \t:=,"))));
+    for (const std::string& remark : remarks_) {
+      const std::string_view kind = kind_of_comment(remark);
+      const std::string first = text::lower(remark.substr(0, remark.find_first_of(" \t:=,")));
+      keep("header line", text::message("comment ", kind.empty() ? first : kind));
+    }
   }
 
   /// Advances to the next element, past the rows that are left of the current one; false after the last.

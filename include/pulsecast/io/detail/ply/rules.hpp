@@ -12,7 +12,8 @@ namespace PULSECAST_NAMESPACE::io::detail {
 inline constexpr std::array<FormatRule, 17> ply_mesh_rules{{
     {"vertex", FormatUse::read, "places `x`, `y`, `z`"},
     {"vertex u", FormatUse::read, "texture coordinates `u`, `v` or `s`, `t`"},
-    {"vertex red, face red", FormatUse::noted, "colours have no effect, pictures and MTL files do"},
+    {"vertex red, face red, vertex alpha, face alpha", FormatUse::noted,
+     "colours have no effect, pictures and MTL files do"},
     {"vertex classification, face classification", FormatUse::noted,
      "classes are those of materials, from an MTL file"},
     {"face", FormatUse::read, "polygons, by the list `vertex_indices`"},
@@ -25,8 +26,10 @@ inline constexpr std::array<FormatRule, 17> ply_mesh_rules{{
     {"comment texturefile", FormatUse::read, "picture of the colours"},
     {"comment texturefile 2", FormatUse::noted, "several pictures have no effect, one has"},
     {"comment offset", FormatUse::noted, "vertices are not moved: a translation of the part moves them"},
-    {"comment transform*", FormatUse::noted, "vertices are not moved: a placement of the part moves them"},
-    {"comment unit*", FormatUse::noted, "a unit is a metre, or as the settings say"},
+    {"comment transform*, comment scale*, comment up, comment up_axis", FormatUse::noted,
+     "vertices are not moved: a placement of the part moves them"},
+    {"comment unit*, comment crs, comment epsg*, comment srs", FormatUse::noted,
+     "a unit is a metre, or as the settings say"},
     {"*", FormatUse::noted, "elements other than vertices, faces and strips have no effect"},
 }};
 
@@ -37,13 +40,14 @@ inline constexpr std::array<FormatRule, 8> ply_cloud_rules{{
     {"range_grid", FormatUse::read, "grid of the points"},
     {"camera", FormatUse::noted, "points are not moved by the pose of a camera"},
     {"comment offset", FormatUse::noted, "points are not moved: a translation of the part moves them"},
-    {"comment transform*", FormatUse::noted, "points are not moved: a placement of the part moves them"},
-    {"comment unit*", FormatUse::noted, "a unit is a metre"},
+    {"comment transform*, comment scale*, comment up, comment up_axis", FormatUse::noted,
+     "points are not moved: a placement of the part moves them"},
+    {"comment unit*, comment crs, comment epsg*, comment srs", FormatUse::noted, "a unit is a metre"},
     {"*", FormatUse::noted, "elements other than vertices have no effect"},
 }};
 
 /// Columns of points with an effect, by canonical names, in PLY files and texts with a row of names.
-inline constexpr std::array<FormatRule, 13> point_rules{{
+inline constexpr std::array<FormatRule, 12> point_rules{{
     {"x", FormatUse::read, "first coordinate"},
     {"y", FormatUse::read, "second coordinate"},
     {"z", FormatUse::read, "third coordinate"},
@@ -55,8 +59,7 @@ inline constexpr std::array<FormatRule, 13> point_rules{{
     {"blue", FormatUse::read, "colour; also `b`, `diffuse_blue`"},
     {"classification", FormatUse::read, "class; also `class`, `label`, `scalar_Classification`"},
     {"object", FormatUse::read, "number of the object; also `object_id`, `instance`"},
-    {"lat*", FormatUse::refused, "coordinates in metres, not degrees"},
-    {"lon*", FormatUse::refused, "coordinates in metres, not degrees"},
+    {"lat*, lon*", FormatUse::refused, "coordinates in metres, not degrees"},
 }};
 
 /// Canonical name of a column or property, by the words that programs write for it.
