@@ -101,8 +101,8 @@ void measure(Report& report, const std::string& scene, const MeshData& mesh) {
   add<TriangleMesh<Bvh<double>>>(all, scene + "/Bvh<double>", mesh);
   add<TriangleMesh<KdTree<float>>>(all, scene + "/KdTree<float>", mesh);
 #ifdef PULSECAST_BENCH_EMBREE
-  add_embree(all, scene + "/Embree", mesh, RTC_BUILD_QUALITY_MEDIUM);
-  add_embree(all, scene + "/Embree high", mesh, RTC_BUILD_QUALITY_HIGH);
+  add_embree(all, scene + "/" + embree_name(), mesh, RTC_BUILD_QUALITY_MEDIUM);
+  add_embree(all, scene + "/" + embree_name() + " high", mesh, RTC_BUILD_QUALITY_HIGH);
 #endif
   std::erase_if(all, [&](const Entrant& entrant) { return !report.wanted(entrant.name); });
   if (all.empty()) return;

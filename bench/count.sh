@@ -12,4 +12,4 @@ trap 'rm -rf "$folder"' EXIT
 valgrind --tool=callgrind --callgrind-out-file="$folder/out" --toggle-collect="$2_*" "$folder/$1" > "$folder/said" 2>&1 ||
   { cat "$folder/said" >&2; exit 1; }
 callgrind_annotate --inclusive=yes --threshold=100 "$folder/out" | sed -nE "s/^ *([0-9,]+) .*:$2_([a-z_]+)( .*|\$)/\\2 \\1/p" | tr -d , |
-  awk -v pulses="${3:-1}" '{ printf "%s %.*f\n", $1, pulses > 1, $2 / pulses; ++found } END { if (!found) { print "nothing was counted"; exit 1 } }'
+  awk -v pulses="${3:-1}" '{ printf "%s %.*f\n", $1, (pulses > 1), $2 / pulses; ++found } END { if (!found) { print "nothing was counted"; exit 1 } }'

@@ -7,6 +7,7 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 build=$(realpath "${1:-build/release}")
+day=$(date +'%-d %B %Y')
 load=$(cut -d' ' -f1 /proc/loadavg)  # before the first program
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
@@ -46,7 +47,7 @@ of() {
 echo "taking robots ($SECONDS s)" >&2
 scans=$(of robot 'scans per second' --scans 300) step=$(of robot_loop 'ms, the longest')
 {
-  printf '| what | measured | command |\n|---|---|---|\n'
+  printf '| what | measured on %s, load %s | command |\n|---|---|---|\n' "$day" "$load"
   sed -nE 's/^\| `(ten VLP-16[^`]*)` \| ([^ ]+) \| ([^ ]+) \| .*/| \1, 2.9 million pulses a second | \2 times real time, the slowest second \3 | `bench_robots` |/p' "$tables"
   printf '| whole turns of 32 x 1,024 pulses to point records, 300 along the street | %.0f scans/s | `robot` |\n' "$scans"
   printf '| a step of 20 cars and a sixth of a turn, 4,822 pulses | %.1f ms | `robot_loop` |\n' "$step"
@@ -56,7 +57,7 @@ scans=$(of robot 'scans per second' --scans 300) step=$(of robot_loop 'ms, the l
 page=docs/tables/performance.md
 {
   sed '/^Measured on /Q' "$page"
-  printf 'Measured on %s, on a load of %s.\n' "$(date +'%-d %B %Y')" "$load"
+  printf 'Measured on %s, on a load of %s.\n' "$day" "$load"
   cat "$tables"
 } > "$folder/page"
 # The first table below the heading of speed gives way to the new one.

@@ -73,15 +73,17 @@ struct Noting {
 
 /// Rays are traced, but their hits are recorded ones.
 struct Traced {
-  const Mesh& mesh;
+  const Scene<Mesh>& scene;  ///< of one part
   const Known& known;
+  using refinements = refines<tag::MissesCones>;
 
   void closest(const RayBundle& rays, std::span<Hit> hits) const noexcept {
     ClosestHits nearest(rays);
-    mesh.closest(rays, nearest);
+    scene.parts()[0].geometry->closest(rays, nearest);
     keep(nearest);
     known.closest(rays, hits);
   }
+  [[nodiscard]] bool misses_cone(const RayCone& cone) const noexcept { return scene.misses_cone(cone); }
 };
 
 /// A detector that sees nothing.
@@ -255,7 +257,7 @@ void measure(Report& report, const std::string& name, const Source& source, cons
   }
 
   const auto whole = survey_of(scene, FullWaveform{});
-  const Traced traced{*scene.parts()[0].geometry, known};
+  const Traced traced{scene, known};
   const std::vector<std::uint64_t> near(near_size, 1);
   Stages stages;
   stages.add("peak", multiply);

@@ -108,7 +108,8 @@ void add_rivals(const Group& group, const std::vector<Rival>& rivals, std::vecto
                 double& sum) {
   const auto rays = std::make_shared<EmbreeRays<Width>>(group.bundles, group.subrays > 1);
   for (const Rival& rival : rivals)
-    works.emplace_back([rays, mesh = rival.mesh.get(), &sum, any = group.any] {
+    works.emplace_back([rays, mesh = rival.mesh.get(), &sum, &group] {
+      [[maybe_unused]] const bool any = group.any;
       if constexpr (Width == 1)
         if (any) return void(sum += rays->occluded(*mesh));
       sum += rays->sum_of_ranges(*mesh);
