@@ -7,7 +7,6 @@
 #include <pulsecast/python/detail/ray_arguments.hpp>
 #include <pulsecast/python/detail/rows.hpp>
 #include <pulsecast/scene/object_attributes.hpp>
-#include <pulsecast/scene/run_batch.hpp>
 
 /// Ray queries of scenes for Python: arrays of rays in, arrays of hits out.
 ///
@@ -186,19 +185,12 @@ Class& bind_ray_queries(Class&& bound) {
   if (!py::detail::get_numpy_internals().get_type_info<detail::HitRow>(false))
     PYBIND11_NUMPY_DTYPE(detail::HitRow, range, normal, weights, texture, velocity, ray, primitive, part, object,
                          classification, front);
-  const auto ray_arguments = [](const auto& define, const auto&... first) {
-    return [=](const auto&... last) {
-      define(first..., py::arg("rays"), py::arg("directions") = py::none(), py::kw_only(), py::arg("near") = 0.0,
-             py::arg("far") = std::numeric_limits<double>::infinity(), py::arg("time") = 0.0, py::arg("seed") = 0,
-             py::arg("threads") = 0, last...);
-    };
-  };
   const auto add = [&](const char* name, auto query, const std::string& doc) {
     const auto ask = [query](const World& scene, NumberArray rays, std::optional<NumberArray> directions, double near,
                              double far, NumberArray time, std::uint64_t seed, unsigned threads) {
       return query(scene, {std::move(rays), std::move(directions), std::move(time), near, far, seed}, threads);
     };
-    ray_arguments([&](const auto&... more) { bound.def(name, ask, more..., doc.c_str()); })();
+    detail::ray_arguments([&](const auto&... more) { bound.def(name, ask, more..., doc.c_str()); })();
   };
   const std::string row =
       "range [m], normal (3, towards the ray's origin), weights (3, of a triangle's corners), texture (2), velocity "
@@ -232,11 +224,11 @@ Class& bind_ray_queries(Class&& bound) {
       "hit. poses: shape (n, 4, 4), homogeneous transforms from the sensor's frame to the world; rays, directions: in "
       "the sensor's frame; else as `closest_hits`. seed: with the index in the array, the key of leaves met at "
       "random. out: array of the result, writeable and C-contiguous, which is filled and returned.";
-  ray_arguments([&](const auto&... more) { bound.def("run_batch", run, more..., batch.c_str()); },
-                py::arg("poses"))(py::arg("out") = py::none());
+  detail::ray_arguments([&](const auto&... more) { bound.def("run_batch", run, more..., batch.c_str()); },
+                        py::arg("poses"))(py::arg("out") = py::none());
   const std::string in = batch + " scenes: sequence of scenes; scene_of: index into it of each pose.";
-  ray_arguments([&](const auto&... more) { bound.def_static("run_batch_in", run_in, more..., in.c_str()); },
-                py::arg("scenes"), py::arg("scene_of"), py::arg("poses"))(py::arg("out") = py::none());
+  detail::ray_arguments([&](const auto&... more) { bound.def_static("run_batch_in", run_in, more..., in.c_str()); },
+                        py::arg("scenes"), py::arg("scene_of"), py::arg("poses"))(py::arg("out") = py::none());
   bound.def("attributes_of", &detail::attributes_of<World>, py::arg("objects"),
             "Dict of arrays of the shape of objects, a name each: attributes of these objects, NaN where one has none. "
             "objects: whole numbers, as the column `object` of hits.");

@@ -24,15 +24,6 @@ template <InstrumentSource Sensor>
 }
 
 namespace detail {
-/// @throws SettingError unless each pose names one of the targets
-inline void require_targets(std::size_t targets, std::span<const std::uint32_t> target_of, std::size_t poses) {
-  require_within("run_batch: indices of targets (number)", target_of.size(), poses, poses, "");
-  for (std::size_t p = 0; p < poses; ++p)
-    if (target_of[p] >= targets)
-      throw SettingError("run_batch: index of the target of pose " + std::to_string(p), target_of[p], "",
-                         "less than the number of targets, " + std::to_string(targets));
-}
-
 /// Ranges as of the public `run_batch`, at pose p in the map `target_at(p)`.
 template <class Target>
 void run_batch(const auto& target_at, std::span<const Pose<frame::Instrument, frame::World>> poses,
@@ -93,7 +84,11 @@ requires(RayTarget<Target> ||
                                               std::span<const Pose<frame::Instrument, frame::World>> poses,
                                               std::span<const Ray> rays, std::span<float> ranges,
                                               const Workers& workers = {}) {
-  detail::require_targets(targets.size(), target_of, poses.size());
+  require_within("run_batch: indices of targets (number)", target_of.size(), poses.size(), poses.size(), "");
+  for (std::size_t p = 0; p < poses.size(); ++p)
+    if (target_of[p] >= targets.size())
+      throw SettingError("run_batch: index of the target of pose " + std::to_string(p), target_of[p], "",
+                         "less than the number of targets, " + std::to_string(targets.size()));
   const auto target_at = [&](std::size_t p) noexcept -> const Target& { return targets[target_of[p]]; };
   detail::run_batch<Target>(target_at, poses, rays, ranges, workers);
 }

@@ -126,8 +126,16 @@ class RayTable {
   return pybind11::reinterpret_borrow<Ranges>(out);
 }
 
-}  // namespace detail
+/// Gives the arguments of rays to `define(first..., arguments..., last...)`.
+[[nodiscard]] auto ray_arguments(const auto& define, const auto&... first) {
+  return [=](const auto&... last) {
+    using pybind11::arg;
+    define(first..., arg("rays"), arg("directions") = pybind11::none(), pybind11::kw_only(), arg("near") = 0.0,
+           arg("far") = pulsecast::detail::infinity, arg("time") = 0.0, arg("seed") = 0, arg("threads") = 0, last...);
+  };
+}
 
+}  // namespace detail
 }  // namespace gnu::visibility("hidden")]]python
 }  // namespace PULSECAST_NAMESPACE
 
