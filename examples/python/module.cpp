@@ -148,15 +148,25 @@ Simulation::Mesh mesh_of(const py::array_t<double, py::array::c_style | py::arra
 /// Scene of meshes by themselves, for ray queries.
 using RaycastingScene = Scene<TriangleMesh<>>;
 
-std::unique_ptr<RaycastingScene> raycasting_scene_of(const std::vector<Simulation::Mesh>& meshes, unsigned threads) {
-  const py::gil_scoped_release free;
+std::vector<RaycastingScene::Part> parts_of(const std::vector<Simulation::Mesh>& meshes, unsigned threads) {
   std::vector<RaycastingScene::Part> parts;
   for (const Simulation::Mesh& mesh : meshes)
     parts.push_back({.geometry = std::make_shared<const TriangleMesh<>>(mesh.data, threads),
                      .materials = material_table({mesh.material}),
                      .object = mesh.object,
                      .attributes = mesh.attributes});
-  return std::make_unique<RaycastingScene>(std::move(parts));
+  return parts;
+}
+
+std::unique_ptr<RaycastingScene> raycasting_scene_of(const std::vector<Simulation::Mesh>& meshes, unsigned threads) {
+  const py::gil_scoped_release free;
+  return std::make_unique<RaycastingScene>(parts_of(meshes, threads));
+}
+
+std::unique_ptr<RaycastingScene> with_meshes(const RaycastingScene& scene, const std::vector<Simulation::Mesh>& meshes,
+                                             unsigned threads) {
+  const py::gil_scoped_release free;
+  return std::make_unique<RaycastingScene>(scene.with_parts(parts_of(meshes, threads), threads));
 }
 
 std::unique_ptr<Simulation> simulation_of(py::handle survey, Paths assets, std::vector<Simulation::Mesh> meshes,
@@ -318,6 +328,8 @@ void bind_raycasting_scene(py::module_& m) {
   scene
       .def(py::init(&raycasting_scene_of), "meshes"_a, py::kw_only(), "threads"_a = 0,
            "meshes: list of Mesh. threads: for building the index; 0: all. Raises SettingError.")
+      .def("with_meshes", &with_meshes, "meshes"_a, py::kw_only(), "threads"_a = 0,
+           "RaycastingScene with more meshes after those of this one, whose memory it shares.")
       .def_property_readonly(
           "memory", [](const RaycastingScene& s) { return s.memory(); }, "Memory of the scene [byte].")
       .def("__repr__", [](const RaycastingScene& s) {

@@ -57,6 +57,25 @@ TEST_CASE("rays of several times meet a moving part of a scene of one's own") {
         std::vector<bool>{true});
 }
 
+TEST_CASE("a sensor at several poses measures each in the scene of its own, into a given array") {
+  py::dict scope = support::python_names("import doors, numpy");
+  py::exec("poses = numpy.tile(numpy.eye(4), (2, 1, 1))\nposes[1, 1, 3] = 4\nout = numpy.zeros((2, 1), numpy.float32)",
+           scope);
+  py::exec("rays = [[0, 0, 0.5, 0, 1, 0]]\ndoor = doors.Door()", scope);
+  CHECK(py::eval("door.run_batch(poses, rays, out=out) is out", scope).cast<bool>());
+  CHECK(py::eval("out[:, 0].tolist()", scope).cast<std::vector<double>>() == std::vector<double>{10, 6});
+  CHECK(py::eval("doors.Door.run_batch_in([door, doors.Door()], [1, 0], poses, rays).tobytes() == out.tobytes()", scope)
+            .cast<bool>());
+  for (const char* wrong :
+       {"doors.Door.run_batch_in([door], [0, 1], poses, rays)", "doors.Door.run_batch_in([door], [0], poses, rays)",
+        "doors.Door.run_batch_in([door], [0, -1], poses, rays)", "doors.Door.run_batch_in([], [0, 0], poses, rays)",
+        "doors.Door.run_batch_in([door], [0.5, 0], poses, rays)",
+        "door.run_batch(poses, rays, out=numpy.zeros((2, 1)))",
+        "door.run_batch(poses, rays, out=numpy.zeros((1, 2), numpy.float32))",
+        "door.run_batch(poses, rays, out=numpy.zeros((2, 2), numpy.float32)[:, :1])"})
+    CHECK_THROWS_AS(py::eval(wrong, scope), py::error_already_set);
+}
+
 TEST_CASE("attributes of hits are those of their objects, in the shape of the question") {
   py::dict scope = support::python_names("import doors, numpy");
   py::exec("door = doors.Door()\nhits = door.closest_hits([[0, 0, 0.5], [6, 0, 0.5]], [[0, 1, 0]] * 2, time=0)", scope);

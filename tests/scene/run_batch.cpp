@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include <pulsecast/scene/run_batch.hpp>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -127,6 +128,46 @@ TEST_CASE("rays of a batch have their own times, near and far ends") {
   CHECK(ranges == std::vector<float>{10, 16, none, none, 16});
 }
 
+TEST_CASE("sensors in scenes of their own, which share a wall, measure what each does in its scene alone") {
+  const MeshData wall{.vertices = {{-1, 0, -1}, {1, 0, -1}, {0, 0, 2}}, .triangles = {{0, 1, 2}}};
+  using World = Scene<TriangleMesh<>>;
+  const auto shape = std::make_shared<const TriangleMesh<>>(wall);
+  const World near({{.geometry = shape, .placement = {.translation = {0, 3, 0}}}});
+  const std::vector<Placement> further{{.translation = {0, 8, 0}}};
+  const std::vector<World> scenes{near, near.with_placements(further), near.without([](const auto&) { return true; })};
+  const std::vector<std::uint32_t> scene_of{1, 0, 2, 1};
+  const std::vector<SensorPose> poses{{}, {{1, 0, 0, 0}, {0, 1, 0}}, {}, {{1, 0, 0, 0}, {0, 5, 0}}};
+  std::vector<float> ranges(8);
+  const std::vector<Ray> rays{{.direction = axis::forward}, {.direction = -axis::forward}};
+  run_batch<World>(scenes, scene_of, poses, rays, ranges, 1);
+  CHECK(ranges == std::vector<float>{8, none, 2, none, none, none, 3, none});
+
+  const std::uint64_t seed = 3;
+  CAPTURE(seed);
+  support::Generator random(seed);
+  std::vector<World> worlds;
+  for (int w = 0; w < 5; ++w) {
+    MeshData mesh;
+    for (int i = 0; i < 100; ++i) support::add_triangle(mesh, {random.point(20), random.point(20), random.point(20)});
+    worlds.push_back(World({{.geometry = std::make_shared<const TriangleMesh<>>(mesh)}}));
+  }
+  const std::vector<SensorPose> many = random_poses(random, 30);
+  std::vector<Ray> beams;  // 1,307: blocks of tasks end within poses
+  while (beams.size() < 1307) beams.push_back({.direction = random.unit()});
+  std::vector<std::uint32_t> of;
+  for (std::size_t p = 0; p < many.size(); ++p) of.push_back(static_cast<std::uint32_t>(p * 7 % 5));
+  std::vector<float> together(many.size() * beams.size()), again(together.size()), alone(beams.size());
+  run_batch<World>(worlds, of, many, beams, together, 1);
+  ThreadPool pool(3);
+  run_batch<World>(worlds, of, many, beams, again, pool);
+  CHECK(together == again);
+  for (std::size_t p = 0; p < many.size(); ++p) {
+    run_batch(worlds[of[p]], std::span(many).subspan(p, 1), beams, alone, 1);
+    CAPTURE(p);
+    CHECK(std::equal(alone.begin(), alone.end(), together.begin() + static_cast<std::ptrdiff_t>(p * beams.size())));
+  }
+}
+
 TEST_CASE("a batch allocates nothing, also with a pool of threads") {
   const std::vector<SensorPose> poses(100, SensorPose{{1, 0, 0, 0}, {0, 0, 2}});
   const std::vector<Ray> rays(100, Ray{.direction = -axis::up});
@@ -150,6 +191,12 @@ TEST_CASE("wrong sizes and poses that are not rigid are refused; empty batches a
     CHECK_THROWS_WITH_AS(run_batch(Floor{}, spoilt, rays, ranges), doctest::Contains("run_batch: pose 1"),
                          SettingError);
   }
+  const std::vector<Floor> floors(2);
+  CHECK_THROWS_WITH_AS(run_batch<Floor>(floors, std::vector<std::uint32_t>{0}, poses, rays, ranges),
+                       doctest::Contains("run_batch: indices of targets (number)"), SettingError);
+  CHECK_THROWS_WITH_AS(run_batch<Floor>(floors, std::vector<std::uint32_t>{1, 2}, poses, rays, ranges),
+                       doctest::Contains("index of the target of pose 1"), SettingError);
+  run_batch<Floor>({}, {}, {}, rays, {});
   run_batch(Floor{}, {}, rays, {});
   run_batch(Floor{}, poses, {}, {});
 }

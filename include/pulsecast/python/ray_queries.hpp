@@ -3,12 +3,10 @@
 #ifndef PULSECAST_PYTHON_RAY_QUERIES_HPP
 #define PULSECAST_PYTHON_RAY_QUERIES_HPP
 
-#include <pybind11/numpy.h>
-
 #include <pulsecast/python/detail/exceptions.hpp>
+#include <pulsecast/python/detail/ray_arguments.hpp>
 #include <pulsecast/python/detail/rows.hpp>
 #include <pulsecast/scene/object_attributes.hpp>
-#include <pulsecast/scene/run_batch.hpp>
 
 /// Ray queries of scenes for Python: arrays of rays in, arrays of hits out.
 ///
@@ -42,69 +40,7 @@ struct HitRow {
 namespace PULSECAST_NAMESPACE {
 namespace [[gnu::visibility("hidden")]] python {
 
-/// Array of numbers in rows, as Python passes it.
-using NumberArray = pybind11::array_t<double, pybind11::array::c_style | pybind11::array::forcecast>;
-
 namespace detail {
-
-template <class Argument>
-using Numbers = NumberArray;  // of each argument
-
-/// Rays of one call: shape (n, 6), origins and directions of any length, or both of shape (n, 3).
-class RayTable {
- public:
-  /// @throws SettingError for arrays of other shapes, or values out of range
-  RayTable(NumberArray rays, std::optional<NumberArray> directions, NumberArray time, double near, double far,
-           std::uint64_t seed)
-      : rays_(std::move(rays)),
-        directions_(directions ? std::move(*directions) : rays_),
-        time_(std::move(time)),
-        near_(near),
-        far_(far),
-        seed_(seed) {
-    stride_ = directions ? 3 : 6;
-    require_shape(rays_, "rays");
-    require_shape(directions_, "directions");
-    if (directions_.shape(0) != rays_.shape(0))
-      throw SettingError("rays directions (rows)", static_cast<double>(directions_.shape(0)), "",
-                         "as many as origins, " + std::to_string(size()));
-    if (time_.size() != 1 && (time_.ndim() != 1 || time_.shape(0) != rays_.shape(0)))
-      throw SettingError("rays time (number)", static_cast<double>(time_.size()), "",
-                         "1, or as many as rays, " + std::to_string(size()));
-    for (pybind11::ssize_t i = 0; i < time_.size(); ++i) require_within("rays time", time_.data()[i], -1e15, 1e15, "s");
-    require_not_negative("rays near", near, "m");
-    if (!(far >= 0)) throw SettingError("rays far", far, "m", "at least 0");
-  }
-
-  [[nodiscard]] std::size_t size() const { return static_cast<std::size_t>(rays_.shape(0)); }
-
-  /// Ray i; of NaN if it has no direction. Leaves are drawn by the seed and the number of the ray.
-  [[nodiscard]] Ray operator[](std::size_t i) const {
-    const double* const o = rays_.data() + i * stride_;
-    const double* const d = directions_.data() + i * stride_ + (stride_ - 3);
-    const Vec3 direction(d[0], d[1], d[2]);
-    return {.origin = {o[0], o[1], o[2]},
-            .direction = direction / length(direction),
-            .near = near_,
-            .far = far_,
-            .tick = Tick::of_seconds(time_.data()[time_.size() == 1 ? 0 : i]),
-            .seed = seed_,
-            .pulse = i};
-  }
-
- private:
-  void require_shape(const NumberArray& array, const std::string& name) const {
-    const pybind11::ssize_t columns = array.ndim() == 2 ? array.shape(1) : 0;
-    if (columns != static_cast<pybind11::ssize_t>(stride_))
-      throw SettingError("rays " + name + " (columns)", static_cast<double>(columns), "",
-                         std::to_string(stride_) + ": shape (n, " + std::to_string(stride_) + ")");
-  }
-
-  NumberArray rays_, directions_, time_;
-  std::size_t stride_ = 6;
-  double near_, far_;
-  std::uint64_t seed_;
-};
 
 /// Row of a hit, with its surface.
 template <class World>
@@ -182,54 +118,46 @@ template <class World>
   return all;
 }
 
-/// Poses of a sensor in the world: shape (n, 4, 4), homogeneous transforms from the sensor's frame.
-/// @throws SettingError for another shape, or a pose that is no rotation and translation
-[[nodiscard]] inline auto sensor_poses(const NumberArray& array) {
-  if (array.ndim() != 3 || array.shape(1) != 4 || array.shape(2) != 4)
-    throw SettingError("poses (dimensions)", static_cast<double>(array.ndim()), "", "shape (n, 4, 4)");
-  std::vector<Pose<frame::Instrument, frame::World>> poses;
-  poses.reserve(static_cast<std::size_t>(array.shape(0)));
-  for (pybind11::ssize_t p = 0; p < array.shape(0); ++p) {
-    const double* const m = array.data(p);  // row by row
-    Matrix3 turn(0);                        // its columns are the sensor's axes
-    for (int row = 0; row < 3; ++row)
-      for (int column = 0; column < 3; ++column) turn[column][row] = m[4 * row + column];
-    double error = std::fabs(m[12]) + std::fabs(m[13]) + std::fabs(m[14]) + std::fabs(m[15] - 1);
-    for (int a = 0; a < 3; ++a)
-      for (int b = 0; b < 3; ++b) error += std::fabs(dot(turn[a], turn[b]) - (a == b ? 1 : 0));
-    error += length(cross(turn[0], turn[1]) - turn[2]);  // 2 for a mirror image
-    if (!(error <= 1e-5))
-      throw SettingError("poses: pose " + std::to_string(p) + " (error)", error, "", "a rotation and a translation");
-    poses.push_back({unit(rotation_of(turn)), {m[3], m[7], m[11]}});
-  }
-  return poses;
-}
-
-/// Ranges of equal sensors at many poses: shape (poses, rays), as of `pulsecast::run_batch`.
+/// Ranges of equal sensors at many poses, as of `pulsecast::run_batch`, at pose p in `scene_at(p)`.
 template <class World>
-[[nodiscard]] pybind11::array_t<float> run_batch(const World& scene, const NumberArray& poses, const RayTable& rays,
-                                                 unsigned threads) {
+[[nodiscard]] pybind11::array_t<float> run_batch(const auto& scene_at, const NumberArray& poses, const RayTable& rays,
+                                                 unsigned threads, const pybind11::object& out) {
   const auto at = sensor_poses(poses);
   std::vector<Ray> beams(rays.size());
   for (std::size_t i = 0; i < beams.size(); ++i) beams[i] = rays[i];
-  pybind11::array_t<float> ranges({poses.shape(0), static_cast<pybind11::ssize_t>(beams.size())});
-  const std::span<float> out(ranges.mutable_data(), static_cast<std::size_t>(ranges.size()));
+  auto ranges = ranges_in(out, poses.shape(0), static_cast<pybind11::ssize_t>(beams.size()));
+  const std::span<float> to(ranges.mutable_data(), static_cast<std::size_t>(ranges.size()));
   const pybind11::gil_scoped_release free;
-  pulsecast::run_batch(scene, at, beams, out, threads);
+  pulsecast::detail::run_batch<World>(scene_at, at, beams, to, threads);
   return ranges;
+}
+
+/// As above, at pose p in `scenes[scene_of[p]]`.
+template <class World>
+[[nodiscard]] pybind11::array_t<float> run_batch_in(const pybind11::sequence& scenes, const pybind11::object& scene_of,
+                                                    const NumberArray& poses, const RayTable& rays, unsigned threads,
+                                                    const pybind11::object& out) {
+  const pybind11::tuple kept(scenes);  // another thread may change a list
+  std::vector<const World*> worlds;
+  for (const pybind11::handle scene : kept) worlds.push_back(&scene.cast<const World&>());
+  const auto of = whole_numbers(scene_of, "run_batch_in scene_of");
+  require_within("run_batch_in scene_of (number)", of.size(), poses.shape(0), poses.shape(0), "");
+  std::vector<const World*> at;
+  for (pybind11::ssize_t p = 0; p < of.size(); ++p) {
+    const std::int64_t index = of.data()[p];
+    require_within("run_batch_in scene_of (of pose " + std::to_string(p) + ')', index, 0,
+                   static_cast<double>(worlds.size()) - 1, "");
+    at.push_back(worlds[static_cast<std::size_t>(index)]);
+  }
+  const auto scene_at = [&](std::size_t p) noexcept -> const World& { return *at[p]; };
+  return run_batch<World>(scene_at, poses, rays, threads, out);
 }
 
 /// Attributes of objects: an array a name, of the shape of `objects`, NaN where an object has none.
 /// @throws SettingError as `ObjectAttributes` @throws TypeError for numbers that are not whole
 template <class World>
 [[nodiscard]] pybind11::dict attributes_of(const World& scene, const pybind11::object& given) {
-  const auto numbers = pybind11::array::ensure(given);
-  const char kind = !numbers ? ' ' : numbers.size() == 0 ? 'i' : numbers.dtype().kind();
-  if (kind != 'i' && kind != 'u')
-    throw pybind11::type_error("attributes_of objects: expected whole numbers, not " +
-                               std::string(pybind11::repr(given)));
-  using pybind11::array;
-  const pybind11::array_t<std::int64_t, array::c_style | array::forcecast> objects(numbers);
+  const auto objects = whole_numbers(given, "attributes_of objects");
   const ObjectAttributes all(scene.parts());
   const std::vector<pybind11::ssize_t> shape(objects.shape(), objects.shape() + objects.ndim());
   std::vector<pybind11::array_t<double>> columns;
@@ -248,8 +176,8 @@ template <class World>
 
 }  // namespace detail
 
-/// Adds the methods `closest_hits`, `all_hits`, `occluded`, `run_batch` and `attributes_of` to a
-/// class of scenes, as `Scene` and `MovingScene`.
+/// Adds the methods `closest_hits`, `all_hits`, `occluded`, `run_batch`, `run_batch_in` and
+/// `attributes_of` to a class of scenes, as `Scene` and `MovingScene`.
 template <class Class>
 Class& bind_ray_queries(Class&& bound) {
   namespace py = pybind11;
@@ -257,38 +185,50 @@ Class& bind_ray_queries(Class&& bound) {
   if (!py::detail::get_numpy_internals().get_type_info<detail::HitRow>(false))
     PYBIND11_NUMPY_DTYPE(detail::HitRow, range, normal, weights, texture, velocity, ray, primitive, part, object,
                          classification, front);
-  const auto add = [&bound]<class... First>(const char* name, auto query, const std::string& doc, First... first) {
-    bound.def(
-        name,
-        [query](const World& scene, const detail::Numbers<First>&... more, NumberArray rays,
-                std::optional<NumberArray> directions, double near, double far, NumberArray time, std::uint64_t seed,
-                unsigned threads) {
-          const detail::RayTable table(std::move(rays), std::move(directions), std::move(time), near, far, seed);
-          return query(scene, more..., table, threads);
-        },
-        first..., py::arg("rays"), py::arg("directions") = py::none(), py::kw_only(), py::arg("near") = 0.0,
-        py::arg("far") = std::numeric_limits<double>::infinity(), py::arg("time") = 0.0, py::arg("seed") = 0,
-        py::arg("threads") = 0, doc.c_str());
+  const auto add = [&](const char* name, auto query, const std::string& doc) {
+    const auto ask = [query](const World& scene, NumberArray rays, std::optional<NumberArray> directions, double near,
+                             double far, NumberArray time, std::uint64_t seed, unsigned threads) {
+      return query(scene, {std::move(rays), std::move(directions), std::move(time), near, far, seed}, threads);
+    };
+    detail::ray_arguments([&](const auto&... more) { bound.def(name, ask, more..., doc.c_str()); })();
   };
   const std::string row =
       "range [m], normal (3, towards the ray's origin), weights (3, of a triangle's corners), texture (2), velocity "
       "(3) [m/s], ray, primitive, part, object, classification, front.";
-  const std::string rays =
+  const std::string asked =
       " rays: shape (n, 6), origin [m] and direction of any length; or origins, shape (n, 3), with directions, shape "
       "(n, 3). near, far: ranges that count [m]. time: of all rays or of each, for parts that move [s]. seed: with "
       "the number of the ray, the key of leaves met at random. threads: 0 for all. Rays of NaN or without direction "
       "miss.";
   add("closest_hits", &detail::closest_hits<World>,
       "Structured array, one row per ray: " + row + " A miss has an infinite range, and -1 as part and primitive." +
-          rays);
-  add("all_hits", &detail::all_hits<World>, "Structured array of all hits, by ray and then by range: " + row + rays);
-  add("occluded", &detail::occluded<World>, "Boolean array: True for each ray with a hit." + rays);
-  add("run_batch", &detail::run_batch<World>,
+          asked);
+  add("all_hits", &detail::all_hits<World>, "Structured array of all hits, by ray and then by range: " + row + asked);
+  add("occluded", &detail::occluded<World>, "Boolean array: True for each ray with a hit." + asked);
+  const auto run = [](const World& scene, const NumberArray& poses, NumberArray rays,
+                      std::optional<NumberArray> directions, double near, double far, NumberArray time,
+                      std::uint64_t seed, unsigned threads, const py::object& out) {
+    const auto scene_at = [&](std::size_t) noexcept -> const World& { return scene; };
+    return detail::run_batch<World>(
+        scene_at, poses, {std::move(rays), std::move(directions), std::move(time), near, far, seed}, threads, out);
+  };
+  const auto run_in = [](const py::sequence& scenes, const py::object& scene_of, const NumberArray& poses,
+                         NumberArray rays, std::optional<NumberArray> directions, double near, double far,
+                         NumberArray time, std::uint64_t seed, unsigned threads, const py::object& out) {
+    return detail::run_batch_in<World>(scenes, scene_of, poses,
+                                       {std::move(rays), std::move(directions), std::move(time), near, far, seed},
+                                       threads, out);
+  };
+  const std::string batch =
       "Array of float32, shape (n, m): range of each of m rays of a sensor at each of n poses [m]; infinite without a "
       "hit. poses: shape (n, 4, 4), homogeneous transforms from the sensor's frame to the world; rays, directions: in "
       "the sensor's frame; else as `closest_hits`. seed: with the index in the array, the key of leaves met at "
-      "random.",
-      py::arg("poses"));
+      "random. out: array of the result, writeable and C-contiguous, which is filled and returned.";
+  detail::ray_arguments([&](const auto&... more) { bound.def("run_batch", run, more..., batch.c_str()); },
+                        py::arg("poses"))(py::arg("out") = py::none());
+  const std::string in = batch + " scenes: sequence of scenes; scene_of: index into it of each pose.";
+  detail::ray_arguments([&](const auto&... more) { bound.def_static("run_batch_in", run_in, more..., in.c_str()); },
+                        py::arg("scenes"), py::arg("scene_of"), py::arg("poses"))(py::arg("out") = py::none());
   bound.def("attributes_of", &detail::attributes_of<World>, py::arg("objects"),
             "Dict of arrays of the shape of objects, a name each: attributes of these objects, NaN where one has none. "
             "objects: whole numbers, as the column `object` of hits.");

@@ -141,6 +141,7 @@ class MovingScene {
   }
   template <class Rays, class Hits>
   void search_movers(const Rays& rays, Hits& hits) const noexcept {
+    if (movers_.empty()) return;
     const auto test = [&](PrimitiveIndex i) noexcept {
       scene_.closest_in(movers_[i].part, moved(movers_[i], rays.tick), rays, hits);
     };

@@ -23,6 +23,41 @@ template <InstrumentSource Sensor>
   return rays;
 }
 
+namespace detail {
+/// Ranges as of the public `run_batch`, at pose p in the map `target_at(p)`.
+template <class Target>
+void run_batch(const auto& target_at, std::span<const Pose<frame::Instrument, frame::World>> poses,
+               std::span<const Ray> rays, std::span<float> ranges, const Workers& workers) {
+  const std::size_t asked = poses.size() * rays.size();
+  require_within("run_batch: ranges (number)", ranges.size(), asked, asked, "");
+  for (std::size_t p = 0; p < poses.size(); ++p)
+    if (!poses[p].rigid())
+      throw SettingError("run_batch: pose " + std::to_string(p) + " (length of its quaternion)",
+                         length(poses[p].rotation), "", "1, with a finite position");
+  constexpr std::size_t block = 512;  // rays of a task: a tenth of a millisecond
+  for_each_index((ranges.size() + block - 1) / block, workers, [&](std::size_t b) {
+    alignas(Ray) std::array<std::byte, block * sizeof(Ray)> memory;  // of rays that are not set twice
+    Ray* const in_world = reinterpret_cast<Ray*>(memory.data());
+    std::array<ClosestHitOf<Target>, block> hits;
+    const std::size_t end = std::min(ranges.size(), (b + 1) * block);
+    for (std::size_t first = b * block, p = first / rays.size(); first < end; ++p) {
+      const Matrix3 turn = matrix_of(poses[p].rotation);
+      const std::size_t count = std::min(end, (p + 1) * rays.size()) - first;
+      for (std::size_t j = 0; j < count; ++j) {
+        Ray& ray = *std::construct_at(in_world + j, rays[first + j - p * rays.size()]);
+        ray.origin = turn * ray.origin + poses[p].position;
+        ray.direction = turn * ray.direction;
+        ray.pulse = first + j;
+      }
+      closest_hits<Target>(target_at(p), std::span<const Ray>(in_world, count), hits);
+      for (std::size_t j = 0; j < count; ++j)
+        ranges[first + j] = static_cast<float>(hits[j] ? hits[j]->range : infinity);
+      first += count;
+    }
+  });
+}
+}  // namespace detail
+
 /// Ranges that equal sensors at many poses measure in one map [m], without echoes, noise or energy:
 /// for learning and planning. The range of ray j at pose p is `ranges[p * rays.size() + j]`, in
 /// single precision (6e-8 relative); infinite without a hit. `rays` are in the sensor's frame;
@@ -35,32 +70,27 @@ requires(RayTarget<Target> ||
                                               std::span<const Pose<frame::Instrument, frame::World>> poses,
                                               std::span<const Ray> rays, std::span<float> ranges,
                                               const Workers& workers = {}) {
-  const std::size_t asked = poses.size() * rays.size();
-  require_within("run_batch: ranges (number)", ranges.size(), asked, asked, "");
+  const auto target_at = [&](std::size_t) noexcept -> const Target& { return target; };
+  detail::run_batch<Target>(target_at, poses, rays, ranges, workers);
+}
+
+/// As above, in several maps: that at pose p is `targets[target_of[p]]`. Scenes made by
+/// `with_placements`, `with_parts` or `without` share their geometry, and so do those that a
+/// `Layered` refers to. @throws SettingError as above, for another number of indices than poses, or
+/// an index beyond the maps
+template <class Target>
+requires(RayTarget<Target> ||
+         SceneQueries<Target>) void run_batch(std::span<const Target> targets, std::span<const std::uint32_t> target_of,
+                                              std::span<const Pose<frame::Instrument, frame::World>> poses,
+                                              std::span<const Ray> rays, std::span<float> ranges,
+                                              const Workers& workers = {}) {
+  require_within("run_batch: indices of targets (number)", target_of.size(), poses.size(), poses.size(), "");
   for (std::size_t p = 0; p < poses.size(); ++p)
-    if (!poses[p].rigid())
-      throw SettingError("run_batch: pose " + std::to_string(p) + " (length of its quaternion)",
-                         length(poses[p].rotation), "", "1, with a finite position");
-  constexpr std::size_t block = 512;  // rays of a task: a tenth of a millisecond
-  for_each_index((ranges.size() + block - 1) / block, workers, [&](std::size_t b) {
-    std::array<Ray, block> asked_rays;
-    std::array<ClosestHitOf<Target>, block> hits;
-    const std::size_t first = b * block, count = std::min(ranges.size() - first, block);
-    for (std::size_t k = first; k < first + count;) {
-      const std::size_t p = k / rays.size();
-      const Matrix3 turn = matrix_of(poses[p].rotation);
-      for (const Ray& in_sensor :
-           rays.subspan(k % rays.size(), std::min(first + count - k, (p + 1) * rays.size() - k))) {
-        Ray& ray = asked_rays[k - first] = in_sensor;
-        ray.origin = turn * in_sensor.origin + poses[p].position;
-        ray.direction = turn * in_sensor.direction;
-        ray.pulse = k++;
-      }
-    }
-    closest_hits<Target>(target, std::span(asked_rays).first(count), hits);
-    for (std::size_t j = 0; j < count; ++j)
-      ranges[first + j] = static_cast<float>(hits[j] ? hits[j]->range : detail::infinity);
-  });
+    if (target_of[p] >= targets.size())
+      throw SettingError("run_batch: index of the target of pose " + std::to_string(p), target_of[p], "",
+                         "less than the number of targets, " + std::to_string(targets.size()));
+  const auto target_at = [&](std::size_t p) noexcept -> const Target& { return targets[target_of[p]]; };
+  detail::run_batch<Target>(target_at, poses, rays, ranges, workers);
 }
 
 }  // namespace PULSECAST_NAMESPACE

@@ -383,6 +383,53 @@ def test_a_sensor_at_many_poses_measures_ranges():
         assert field in error.value.field
 
 
+def test_sensors_in_scenes_of_their_own_measure_what_each_does_in_its_scene():
+    ground = pulsecast.RaycastingScene([pulsecast.Mesh(*SQUARE)])
+    lid = pulsecast.Mesh(np.array(SQUARE[0]) + [0, 0, 10], SQUARE[1])
+    covered = ground.with_meshes([lid])
+    assert repr(covered) == "<RaycastingScene of 2 meshes>" and repr(ground) == "<RaycastingScene of 1 meshes>"
+    poses = np.tile(np.eye(4), (3, 1, 1))
+    poses[:, 2, 3] = [1, 2, 3]
+    up_and_down = (np.zeros((2, 3)), [[0, 0, 1], [0, 0, -1]])
+    of = [0, 1, 0]
+    ranges = pulsecast.RaycastingScene.run_batch_in([ground, covered], of, poses, *up_and_down)
+    assert ranges.tolist() == [[np.inf, 1], [8, 2], [np.inf, 3]]
+    rays = np.random.default_rng(4).normal(size=(3000, 6))
+    together = ground.run_batch_in((ground, covered), np.array(of, np.uint8), poses, rays, threads=2)
+    assert all((together[p] == (ground, covered)[of[p]].run_batch(poses[p:p + 1], rays)[0]).all() for p in range(3))
+    assert ground.run_batch_in([], [], np.empty((0, 4, 4)), rays).shape == (0, 3000)
+    for wrong in ([0, 1], [0, 1, 2], [0, -1, 1]):
+        with pytest.raises(pulsecast.SettingError) as error:
+            ground.run_batch_in([ground, covered], wrong, poses, rays)
+        assert "run_batch_in scene_of" in error.value.field
+    with pytest.raises(TypeError, match="expected whole numbers"):
+        ground.run_batch_in([ground, covered], [0, 0.5, 1], poses, rays)
+    with pytest.raises((TypeError, RuntimeError)):
+        ground.run_batch_in([ground, lid], of, poses, rays)
+
+
+def test_a_batch_fills_a_given_array():
+    scene = pulsecast.RaycastingScene([pulsecast.Mesh(*SQUARE)])
+    poses = np.tile(np.eye(4), (3, 1, 1))
+    poses[:, 2, 3] = [1, 2, 3]
+    down = (np.zeros((2, 3)), [[0, 0, -1], [0, -3, -4]])
+    everything = np.zeros((2, 3, 2), np.float32)
+    assert scene.run_batch(poses, *down, out=everything[1]).base is everything
+    assert np.allclose(everything, [np.zeros((3, 2)), [[1, 1.25], [2, 2.5], [3, 3.75]]])
+    assert scene.run_batch_in([scene], [0] * 3, poses, *down, out=everything[0]).tobytes() == everything[1].tobytes()
+    fixed = np.zeros((3, 2), np.float32)
+    fixed.flags.writeable = False
+    for out, given in ((np.zeros((3, 2)), "not a float64 array of shape (3, 2)"), (np.zeros((2, 3), np.float32), "not a float32 array of shape (2, 3)"),
+                       (np.zeros(6, np.float32), "of shape (6,)"), (np.zeros((2, 3), np.float32).T, "not a strided float32 array of shape (3, 2)"),
+                       (fixed, "not a read-only float32 array"), (np.zeros((3, 2), ">f4"), "not a >f4 array"), (np.zeros((3, 2), np.int32), "int32")):
+        with pytest.raises(ValueError) as error:
+            scene.run_batch(poses, *down, out=out)
+        assert "run_batch out: expected a writeable C-contiguous array of float32 of shape (3, 2)" in str(error.value) and given in str(error.value)
+        assert not out.any()
+    with pytest.raises(TypeError, match="not <class 'list'>"):
+        scene.run_batch(poses, *down, out=[[0.0] * 2] * 3)
+
+
 @pytest.mark.parametrize(("asked", "field"), [
     ({"rays": np.zeros((2, 5))}, "rays rays"), ({"rays": np.zeros(6)}, "rays rays"),
     ({"rays": np.zeros((2, 3)), "directions": np.zeros((3, 3))}, "rays directions"),

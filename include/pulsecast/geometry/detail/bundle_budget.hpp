@@ -12,7 +12,7 @@ namespace PULSECAST_NAMESPACE::detail {
 /// up, as its limit then excludes all boxes: single rays are faster.
 template <class Hits>
 struct BudgetedLimit {
-  static constexpr int most = 128;  ///< leaves that cost about as much as single rays
+  static constexpr int most = 48;  ///< leaves: as many cost more than single rays where triangles are small
 
   const Hits& nearest;    ///< hits so far
   mutable int asked = 0;  ///< number of reads of the limit
