@@ -19,7 +19,7 @@ namespace {
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
 bool may_meet(const Triangle& triangle, const SingleRayPacket& ray, const Box& bounds) {
-  return LineTest(ray, bounds).meet(TrianglePacket(1, [&](std::size_t) noexcept { return triangle; })).possible != 0;
+  return LineTest(ray, bounds).meet(TrianglePacket(1, [&](std::size_t) noexcept { return triangle; }), ray).possible != 0;
 }
 
 bool meets(const Triangle& triangle, const SingleRayPacket& ray) {
@@ -71,9 +71,9 @@ TEST_CASE("each lane of a packet has its own bit, and idle lanes have that of th
   const LineTest line(ray, bounds);
   for (std::size_t met = 0; met < simd::lane_count; ++met) {
     const TrianglePacket packet(simd::lane_count, [&](std::size_t n) noexcept { return n == met ? ahead : beside; });
-    CHECK(line.meet(packet).possible == 1U << met);
+    CHECK(line.meet(packet, ray).possible == 1U << met);
   }
-  CHECK(line.meet(TrianglePacket(1, [&](std::size_t) noexcept { return ahead; })).possible ==
+  CHECK(line.meet(TrianglePacket(1, [&](std::size_t) noexcept { return ahead; }), ray).possible ==
         (1U << simd::lane_count) - 1);
 }
 
@@ -120,7 +120,7 @@ TEST_CASE("what the line passes for certain is hit as if its sides had been comp
     const SingleRayPacket ray(Ray{.origin = origin, .direction = normalize(aim - origin)});
     const Box bounds = t.bounds();
     const TrianglePacket packet(1, [&](std::size_t) noexcept { return t; });
-    const LineTest::Met met = LineTest(ray, bounds).meet(packet);
+    const auto met = LineTest(ray, bounds).meet(packet, ray);
     if (met.certain == 0) continue;
     ++certain;
     const PrimitiveIndex primitive = 0;

@@ -7,11 +7,12 @@
 
 namespace PULSECAST_NAMESPACE {
 
-/// Conservative test of triangles against the line through a single ray, in a third of the
+/// Conservative test of triangles against the line through a ray, in a third of the
 /// operations of `intersect`, which decides about those left. The line is on one side of the three
 /// edges of a triangle that it hits, by the sign of a volume. One bound on the roundings, here and
 /// in `intersect`, holds for all triangles. Infinite and tiny coordinates pass. Source: volume test
 /// of Amanatides & Choi 1997, with products of corners shared by edges; bounds: Higham 2002, ch. 3.
+template <class Rays>
 class LineTest {
  public:
   /// Bit masks of triangles, idle lanes included.
@@ -20,13 +21,13 @@ class LineTest {
     unsigned certain;   ///< those of them that it passes on one side of all edges, whatever the roundings
   };
 
-  LineTest() = default;
-  /// Line through a ray, for triangles within `bounds` [m], both of which outlive it.
-  LineTest(const SingleRayPacket& ray, const Box& bounds) noexcept : ray_(&ray), bounds_(&bounds) {}
+  /// Lines through a ray, or through those of a sheaf, for triangles within `bounds` [m]; both outlive it.
+  LineTest(const Rays& rays, const Box& bounds) noexcept : rays_(rays), bounds_(bounds) {}
 
-  [[nodiscard, gnu::always_inline]] Met meet(const TrianglePacket& triangles) const noexcept {
+  [[nodiscard, gnu::always_inline]] Met meet(const TrianglePacket& triangles,
+                                             const SingleRayPacket& ray) const noexcept {
     if (doubt_ == 0) doubt_ = doubt();
-    const Vec3 origin = ray_->origin, direction = ray_->toward;
+    const Vec3 origin = ray.origin, direction = ray.toward;
     using Corner = TrianglePacket::Corner;
     const auto from_origin = [&](const Corner& p) noexcept -> Corner {
       return {p.x - origin.x, p.y - origin.y, p.z - origin.z};
@@ -53,16 +54,24 @@ class LineTest {
   [[nodiscard, gnu::noinline]] double doubt() const noexcept {
     // `intersect` lets a side be in doubt by 17 roundings of 4 reach^2 times the direction's
     // length, and this test adds 12 of its 1-norm
-    const Vec3 reaches = max(abs(bounds_->min - ray_->origin), abs(bounds_->max - ray_->origin)),
-               speeds = abs(ray_->toward);
-    const double reach = reaches.x + reaches.y + reaches.z,
-                 speed = ray_->direction_length + speeds.x + speeds.y + speeds.z;
+    Vec3 reaches = max(abs(bounds_.min - rays_.origin), abs(bounds_.max - rays_.origin)), speeds;
+    double speed = 0;
+    if constexpr (Rays::capacity > 1) {
+      reaches += rays_.origin_reach;
+      speeds = max(abs(rays_.low), abs(rays_.high));
+      speed = rays_.rays[0].direction_length;
+    } else {
+      speeds = abs(rays_.toward);
+      speed = rays_.direction_length;
+    }
+    const double reach = reaches.x + reaches.y + reaches.z;
+    speed += speeds.x + speeds.y + speeds.z;
     const double doubt = 32 * std::numeric_limits<double>::epsilon() * reach * reach * speed + tiny;
     return doubt < huge ? doubt : detail::infinity;
   }
 
-  const SingleRayPacket* ray_ = nullptr;
-  const Box* bounds_ = nullptr;
+  const Rays& rays_;
+  const Box& bounds_;
   mutable double doubt_ =
       0;  ///< volume below which a side is in doubt [m^2 times that of directions]; 0 before the first use
 };
