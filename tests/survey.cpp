@@ -1002,13 +1002,36 @@ template <class Map>
 struct Counted : Map {
   std::shared_ptr<std::atomic<std::size_t>> together = std::make_shared<std::atomic<std::size_t>>(0);
   using Map::closest;
+  using TracesSheaves = Counted;
   void closest(const pulsecast::detail::RaySheaf& rays, double wavelength, std::span<Hit> hits) const noexcept {
     *together += rays.size;
     Map::closest(rays, wavelength, hits);
   }
 };
 
+/// Map that replaces the hits of bundles alone: nothing is met.
+struct Emptied : Scene<TriangleMesh<>> {
+  using Scene::closest;
+  using Scene::Scene;
+  void closest(const RayBundle& rays, std::span<Hit> hits) const noexcept {
+    std::fill_n(hits.begin(), rays.size, Hit{});
+  }
+};
+static_assert(pulsecast::detail::TracesSheaves<Scene<TriangleMesh<>>> && !pulsecast::detail::TracesSheaves<Emptied>);
+
 }  // namespace
+
+TEST_CASE("a map that inherits a scene and replaces its hits of bundles is asked for these by pulses of one ray") {
+  support::Generator any(1);
+  Scene<TriangleMesh<>>::Part part;
+  part.geometry = std::make_shared<const TriangleMesh<>>(support::soup(any, 2000, 10));
+  part.materials = material_table();
+  const Erratic source{1, 600, 1};
+  const Scene<TriangleMesh<>> full({part});
+  const Emptied emptied({part});
+  CHECK(run(Survey{source, SingleRay{}, full, Receiver{}, FirstHit{}}, {}).echoes > 100);
+  CHECK(run(Survey{source, SingleRay{}, emptied, Receiver{}, FirstHit{}}, {}).echoes == 0);
+}
 
 TEST_CASE("pulses of one ray in order are those of single calls, to the bit, and many are traced together") {
   using Moving = MovingScene<TriangleMesh<>, VoxelGrid<TransmissiveVoxels>>;

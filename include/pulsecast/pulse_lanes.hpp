@@ -26,13 +26,17 @@ simd::Mask find_poses(const M& motion, const TickLanes& ticks, simd::Mask asked,
   }
 }
 
-/// Pulses of a source from slot i on, as the concept MakesLanes requires: of one slot, if the source does not, or
-/// replaces the `pulse` of one that does.
+/// Pulses of a source of every `step`-th slot from i on, as the concepts MakesLanes and StridesLanes require: of one
+/// slot, if the source does not, or replaces the `pulse` of one that does.
 template <class S>
-[[nodiscard]] detail::PulsesOf<S> find_pulses(const S& source, PulseIndex i, std::size_t count) noexcept {
-  static_assert(detail::members_checked<S, tag::MakesLanes, tag::FindsSlots, tag::SkipsBlocked, tag::DrawsByLeg,
-                                        tag::MeasuresBeam>);
-  if constexpr (MakesLanes<S> && detail::LanesOfItsPulses<S>) return source.pulse_lanes(i, count);
+[[nodiscard]] detail::PulsesOf<S> find_pulses(const S& source, PulseIndex i, std::size_t count,
+                                              [[maybe_unused]] PulseIndex step = 1) noexcept {
+  static_assert(detail::members_checked<S, tag::MakesLanes, tag::StridesLanes, tag::FindsSlots, tag::SkipsBlocked,
+                                        tag::DrawsByLeg, tag::MeasuresBeam>);
+  if constexpr (detail::MakesStridedLanes<S>)
+    return source.pulse_lanes(i, count, step);
+  else if constexpr (MakesLanes<S> && detail::LanesOfItsPulses<S>)
+    if (step == 1) return source.pulse_lanes(i, count);
   detail::PulsesOf<S> one;
   one.push_back(source.pulse(i));
   return one;

@@ -87,6 +87,16 @@ concept MakesLanes = requires(const S s, PulseIndex i, std::size_t count) {
 PULSECAST_OPTIONAL_MEMBER(MakesLanes, "PulseLanes<Frame> pulse_lanes(PulseIndex, std::size_t) const noexcept", pulse_lanes,
                           (PulseIndex{}, std::size_t{}))
 
+/// Source that makes every n-th pulse in lanes at no more cost, as of one channel of many: `pulse_lanes(i, count, step)`.
+/// Law: its lane k is `pulse(i + k * step)`, bit for bit.
+PULSECAST_OPTIONAL_CONSTANT(StridesLanes, strides_lanes)
+
+namespace detail {
+/// Source whose `pulse_lanes` take a step.
+template <class S>
+concept MakesStridedLanes = MakesLanes<S> && StridesLanes<S> && LanesOfItsPulses<S>;
+}  // namespace detail
+
 /// Source that finds slots by time, as `Scanner`.
 /// Law: all slots before `slot_from(t)` are at times before t; it may be early, and is at most `size()`.
 template <class S>

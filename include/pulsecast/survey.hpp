@@ -58,39 +58,51 @@ class Survey : public EchoSimulator<Footprint, Target, Detector, Transport> {
 
   /// Simulates pulse i.
   [[nodiscard]] Outcome operator()(PulseIndex i, Workspace& w) const noexcept {
-    return Echoes::operator()(i, source_.pulse(i), w);
+    if constexpr (Echoes::in_blocks) {
+      make_block(i, 1, w);
+      return Echoes::result_of(0, w);
+    } else {
+      return Echoes::operator()(i, source_.pulse(i), w);
+    }
   }
 
   /// As the concept SimulatesInOrder requires: pulses are made by the register, which does not outlive the call.
   template <class Next>
   void simulate_in_order(PulseIndex i, PulseIndex end, Workspace& w, const Next& next) const {
-    const auto lanes = [](PulseIndex slots) { return slots < simd::lane_count ? slots : simd::lane_count; };
     if constexpr (Echoes::in_blocks) {
       std::size_t slots = 0;
-      for (PulseIndex first = i; i < end;) {
+      for (PulseIndex first = i; i < end; i = next(Echoes::result_of(i - first, w)))
         if (i - first >= slots) {
           first = i;
-          const PulseIndex last = i + std::min<PulseIndex>(end - i, Echoes::block_size());
-          for (slots = 0; first + slots < last;) {
-            const auto pulses = find_pulses(source_, first + slots, lanes(last - first - slots));
-            for (std::size_t lane = 0; lane < pulses.size; ++lane) pulses.get(lane, w.pulses[slots++]);
-          }
-          Echoes::trace_block(first, slots, w);
+          slots = std::min<PulseIndex>(end - i, Echoes::block_size());
+          make_block(first, slots, w);
         }
-        const std::optional<Hit>& hit = w.hits[i - first];
-        i = next(Echoes::operator()(i, w.pulses[i - first], w, hit ? &*hit : nullptr));
-      }
     } else {
       PulseLanes<frame::World> pulses;
       for (PulseIndex first = i; i < end; i = next(Echoes::operator()(i, pulses[i - first], w)))
         if (i - first >= pulses.size) {
           first = i;
-          pulses = find_pulses(source_, i, lanes(end - i));
+          pulses = find_pulses(source_, i, lanes_for(end - i));
         }
     }
   }
 
  private:
+  static std::size_t lanes_for(PulseIndex slots) noexcept { return std::min<PulseIndex>(slots, simd::lane_count); }
+
+  /// Makes and traces the pulses of slots. Those of one emitter share registers, if the source makes them so. One copy
+  /// of the code, for single calls and runs, as compilers may contract products and sums in different ways.
+  [[gnu::noinline]] void make_block(PulseIndex first, std::size_t slots, Workspace& w) const noexcept {
+    const std::size_t step = detail::MakesStridedLanes<Source> ? Echoes::emitter_count() : 1;
+    for (std::size_t start = 0; start < std::min(step, slots); ++start)
+      for (std::size_t slot = start; slot < slots;) {
+        const auto pulses = find_pulses(source_, first + slot, lanes_for((slots - slot + step - 1) / step), step);
+        Echoes::enter(pulses, first, slot, step, w);
+        slot += pulses.size * step;
+      }
+    Echoes::trace_block(slots, w);
+  }
+
   static std::vector<Emitter> emitters_of(Source& source) {
     detail::validate_in_place(source);
     std::vector<Emitter> emitters = source.emitters();

@@ -106,6 +106,39 @@ TEST_CASE("records have their numbers at the offsets of the layout, scaled, and 
   for (std::size_t k = 36; k < 48; ++k) CHECK(second[k] == std::byte{});
 }
 
+TEST_CASE("many points are stored together as one by one, also of a column of the user's and of attributes") {
+  const PointColumn own{"own", "", NumberType::float64, [](const PointView& p) noexcept { return 3 * p.echo.range; },
+                        ""};
+  PointLayout layout = every_column(NumberType::float32).with({{"own", NumberType::float64, &own, 2}});
+  const auto sensor = [](Tick t) { return Pose<frame::Instrument, frame::World>{no_rotation, {t.seconds(), 0, 0}}; };
+  for (const bool surfaces : {false, true}) {
+    PointSettings settings{.sensor = sensor};
+    if (surfaces) settings.surfaces = [](const EchoBatch&, const Shot&, const Echo&) { return std::nullopt; };
+    const PointEncoder encoder(layout, settings);
+    for (const std::size_t count : {0U, 1U, 31U, 32U, 33U, 200U}) {
+      CAPTURE(count);
+      std::vector<Shot> shots;
+      std::vector<Echo> echoes;
+      for (std::uint32_t n = 0; echoes.size() < count; ++n) {
+        shots.push_back({.index = n, .tick = {n, 0.5}, .direction = axis::right, .channel = 3});
+        shots.back().first_echo = static_cast<std::uint32_t>(echoes.size());
+        shots.back().echoes = std::min(n % 4, static_cast<std::uint32_t>(count - echoes.size()));
+        for (std::uint32_t k = 0; k < shots.back().echoes; ++k) echoes.push_back({.range = 7.0 * n + k});
+      }
+      const EchoBatch batch{.shots = shots, .echoes = echoes, .samples = {}};
+      std::vector<std::byte> together, each(count * layout.size);
+      encoder.encode(batch, together);
+      std::byte* record = each.data();
+      for (const Shot& shot : shots)
+        for (const Echo& echo : batch.echoes_of(shot)) {
+          encoder.store(batch, shot, echo, record);
+          record += layout.size;
+        }
+      CHECK(together == each);
+    }
+  }
+}
+
 TEST_CASE("points of a moving sensor are distorted in its frame, unless the distortion is removed") {
   // two pulses ahead, 0.5 s apart, to a wall at y = 50, from a sensor that drives to it at 10 m/s
   const MeshData wall{.vertices = {{-9, 50, -9}, {9, 50, -9}, {9, 50, 9}, {-9, 50, 9}},

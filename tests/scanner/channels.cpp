@@ -13,6 +13,7 @@
 #include <pulsecast/deflector/risley_prisms.hpp>
 #include <pulsecast/deflector/rotating_head.hpp>
 #include <pulsecast/platform/platform.hpp>
+#include <pulsecast/platform/straight_line.hpp>
 #include <pulsecast/platform/tripod.hpp>
 #include <pulsecast/scanner/scanner.hpp>
 
@@ -62,6 +63,16 @@ TEST_CASE("channels take turns, and each is what it is alone but for its number"
     REQUIRE(p->origin() == Vec3{0, 0, 0.001 * static_cast<double>(i % 16)});
   }
   CHECK(support::source_laws(device) == "");
+}
+
+TEST_CASE("pulses of one channel share a register, through heads and platforms, also of channels of several emitters") {
+  const Deflector sensor{RotatingHead{.angular_rate = 100}, Channels{fan(16)}};
+  const Platform car{StraightLine{.speed = 10}, Mount{.lever_arm = {0, 0, 2}}, sensor};
+  static_assert(pulsecast::detail::MakesStridedLanes<decltype(car)>);
+  CHECK(car.pulse_lanes(5, simd::lane_count, 16).size == simd::lane_count);
+  CHECK(support::source_laws(sensor) == "");
+  CHECK(support::source_laws(car) == "");
+  CHECK(support::source_laws(Channels{std::vector{Channels{fan(3)}, Channels{fan(3)}}}) == "");
 }
 
 TEST_CASE("channels keep the laws of a source, of any number and size") {

@@ -176,6 +176,22 @@ template <class M>
   return {};
 }
 
+/// Every n-th pulse in lanes is that of a single call.
+template <class S>
+[[nodiscard]] std::string stride_laws(const S& source, const auto& slots, PulseIndex emitters) {
+  for (const PulseIndex i : slots)
+    for (const PulseIndex step : {PulseIndex{2}, PulseIndex{3}, emitters, 2 * emitters}) {
+      const std::size_t count = std::min<PulseIndex>(simd::lane_count, (source.size() - i + step - 1) / step);
+      const auto pulses = source.pulse_lanes(i, count, step);
+      if (pulses.size < 1 || pulses.size > count)
+        return detail::sentence("of every ", step, "-th slot from ", i, " on, ", pulses.size, " are made");
+      for (std::size_t lane = 0; lane < pulses.size; ++lane)
+        if (!detail::same(pulses[lane], source.pulse(i + lane * step)))
+          return detail::sentence("pulse ", i + lane * step, " differs in lanes of every ", step, "-th");
+    }
+  return {};
+}
+
 /// Pure in i, in order of time, rigid, of an emitter in the table. Asks `samples` slots evenly spread over the source
 /// and those next to them.
 template <class S>
@@ -223,6 +239,8 @@ template <class S>
           if (!detail::same(pulses[lane], source.pulse(i + lane)))
             return detail::sentence("pulse ", i + lane, " differs in lanes from ", i);
       }
+  if constexpr (StridesLanes<S>)
+    if (const std::string broken = stride_laws(source, slots, emitters.size()); !broken.empty()) return broken;
   if constexpr (SkipsBlocked<S>)
     for (const PulseIndex i : slots) {
       const PulseIndex next = source.next_pulse(i);

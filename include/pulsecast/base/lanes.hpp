@@ -50,10 +50,10 @@ struct TickLanes {
   explicit TickLanes(const Tick& t) noexcept
       : second(detail::in_all_lanes(static_cast<double>(t.second))), fraction(detail::in_all_lanes(t.fraction)) {}
 
-  /// Begins of the slots from i on of a source of constant rate [Hz], as `Tick::of`.
-  [[nodiscard]] static TickLanes of(PulseIndex i, double rate) noexcept {
-    const simd::Doubles n = simd::generate([i](std::size_t lane) { return static_cast<double>(i + lane); }), zero{},
-                        rates = zero + rate;
+  /// Begins of every `step`-th slot from i on of a source of constant rate [Hz], as `Tick::of`.
+  [[nodiscard]] static TickLanes of(PulseIndex i, double rate, PulseIndex step = 1) noexcept {
+    const simd::Doubles n = simd::generate([&](std::size_t lane) { return static_cast<double>(i + lane * step); }),
+                        zero{}, rates = zero + rate;
     const auto rest_of = [&](const simd::Doubles& whole) {
       const simd::Doubles product = whole * rates;
       return (n - product) - detail::product_error(whole, rates, product);

@@ -20,6 +20,7 @@ class Deflector {
 
  public:
   using refinements = refines<tag::MakesLanes>;
+  static constexpr bool strides_lanes = detail::MakesStridedLanes<Source>;
   /// Throws a `SettingError` if the settings of `moving` or `source` are invalid.
   Deflector(Moving moving, Source source)
       : moving_(validated(std::move(moving))), source_(validated(std::move(source))) {}
@@ -32,8 +33,9 @@ class Deflector {
     return pulse_lanes(i, 1)[0];
   }
 
-  [[nodiscard]] PulseLanes<frame::Instrument> pulse_lanes(PulseIndex i, std::size_t count) const noexcept {
-    const auto inner = find_pulses(source_, i, count);
+  [[nodiscard]] PulseLanes<frame::Instrument> pulse_lanes(PulseIndex i, std::size_t count,
+                                                          PulseIndex step = 1) const noexcept {
+    const auto inner = find_pulses(source_, i, count, step);
     detail::PosesOf<Moving> poses;
     const simd::Mask open = find_poses(moving_, inner.tick, inner.sent, poses);
     PULSECAST_ASSERT(rigid_lanes(poses, open));

@@ -198,6 +198,10 @@ class LinkBudget {
 /// last result: the echo of a single ray has the range of its hit.
 class WhiteTarget {
  public:
+  WhiteTarget() = default;
+  /// Keeps a known power [W] from a range [m].
+  WhiteTarget(double range, double power) noexcept : range_(range), power_(power) {}
+
   /// Power received from a range [m] by the link budget, always the same one [W].
   [[nodiscard]] double power(const LinkBudget& budget, double range) noexcept {
     if (range != range_) {

@@ -64,6 +64,25 @@ template <class Visitor>
   }
 }
 
+/// Values of a column of points: of one in `point_columns` by a loop of its own, without calls.
+using ColumnLoop = void (*)(std::span<const PointView> points, double* values) noexcept;
+
+template <std::size_t column>
+void values_of(std::span<const PointView> points, double* values) noexcept {
+  for (const PointView& point : points) *values++ = point_columns[column].get(point);
+}
+
+/// Loop of a column; null if it is not in `point_columns`.
+[[nodiscard]] inline ColumnLoop loop_of(const PointColumn& column) noexcept {
+  constexpr auto loops = []<std::size_t... k>(std::index_sequence<k...>) {
+    return std::array<ColumnLoop, sizeof...(k)>{&values_of<k>...};
+  }
+  (std::make_index_sequence<point_columns.size()>());
+  for (std::size_t k = 0; k < loops.size(); ++k)
+    if (&point_columns[k] == &column) return loops[k];
+  return nullptr;
+}
+
 }  // namespace detail
 
 /// Number in a field of a record, as it is stored.
@@ -109,13 +128,12 @@ class PointEncoder {
   /// Calls `use(view)` with the `PointView` of an echo of a batch, which has what the layout needs.
   template <class Use>
   void see(const EchoBatch& batch, const Shot& shot, const Echo& echo, const Use& use) const {
-    see(batch, shot, echo, frame_of(shot), use);
+    std::optional<Frame> own;
+    see(batch, shot, echo, frame_of(shot, own), use);
   }
 
   /// Writes the record of a point to `layout().size` bytes, but for those between fields.
-  void store(const PointView& view, std::byte* record) const noexcept {
-    for (const Number& number : numbers_) number.store(number, view, record);
-  }
+  void store(const PointView& view, std::byte* record) const noexcept { store(std::span(&view, 1), record); }
   /// Writes the record of an echo of a batch, as above.
   void store(const EchoBatch& batch, const Shot& shot, const Echo& echo, std::byte* record) const {
     see(batch, shot, echo, [&](const PointView& view) { store(view, record); });
@@ -135,20 +153,42 @@ class PointEncoder {
 
   /// Writes them to `count_echoes(batch)` times `layout().size` bytes.
   void encode(const EchoBatch& batch, std::byte* records) const {
+    Points points;
+    std::size_t count = 0;
+    const auto store_all = [&] {
+      store({points.views.data(), count}, records);
+      records += std::exchange(count, 0) * layout_.size;
+    };
     for (const Shot& shot : batch.shots) {
       if (shot.echoes == 0) continue;
-      const Frame frame = frame_of(shot);
+      std::optional<Frame> own;
+      const Frame* const frame = frame_of(shot, own);
       for (const Echo& echo : batch.echoes_of(shot)) {
-        see(batch, shot, echo, frame, [&](const PointView& view) { store(view, records); });
-        records += layout_.size;
+        if (surfaces_ || colours_) {  // which live during the call
+          see(batch, shot, echo, frame, [&](const PointView& view) { store(view, records); });
+          records += layout_.size;
+          continue;
+        }
+        set(*std::construct_at(&points.views[count], PointView{shot, echo, settings_, start_}), frame);
+        if (++count == points.views.size()) store_all();
       }
     }
+    store_all();
   }
 
  private:
+  using Frame = Pose<frame::World, frame::Instrument>;
+
+  /// Points that are stored together, field by field.
+  union Points {
+    std::array<PointView, 32> views;
+    Points() noexcept {}  // leaves them unset
+  };
+
   /// Number of a record: a field, as it is stored.
   struct Number {
-    void (*store)(const Number&, const PointView&, std::byte*) noexcept;
+    void (*store)(const Number&, std::span<const PointView>, std::byte*, std::size_t size) noexcept;
+    detail::ColumnLoop loop;                            // null for an attribute, and a column of the user's
     double (*get)(const PointView&) noexcept;           // null for an attribute
     std::uint64_t (*whole)(const PointView&) noexcept;  // null unless it is stored exactly
     std::size_t attribute;                              // index in the attributes
@@ -161,17 +201,33 @@ class PointEncoder {
   };
 
   template <class Stored>
-  static void store_value(const Number& number, const PointView& view, std::byte* record) noexcept {
-    detail::store_number<Stored>(number.of(view), record + number.offset);
+  static void store_values(const Number& number, std::span<const PointView> views, std::byte* record,
+                           std::size_t size) noexcept {
+    std::array<double, std::tuple_size_v<decltype(Points::views)>> values;
+    if (number.loop) {
+      number.loop(views, values.data());
+      for (std::size_t k = 0; k < views.size(); ++k) values[k] *= number.scale;
+    } else {
+      for (std::size_t k = 0; k < views.size(); ++k) values[k] = number.of(views[k]);
+    }
+    record += number.offset;
+    for (std::size_t k = 0; k < views.size(); ++k) detail::store_number<Stored>(values[k], record + k * size);
   }
   template <class Stored>
-  static void store_whole(const Number& number, const PointView& view, std::byte* record) noexcept {
-    detail::store_whole<Stored>(number.whole(view), record + number.offset);
+  static void store_wholes(const Number& number, std::span<const PointView> views, std::byte* record,
+                           std::size_t size) noexcept {
+    for (std::size_t k = 0; k < views.size(); ++k)
+      detail::store_whole<Stored>(number.whole(views[k]), record + k * size + number.offset);
+  }
+
+  /// Writes the records of up to as many points as `Points` holds.
+  void store(std::span<const PointView> views, std::byte* records) const noexcept {
+    for (const Number& number : numbers_) number.store(number, views, records, layout_.size);
   }
 
   [[nodiscard]] Number number_of(const PointField& field) const {
     const PointColumn& column = *field.column;
-    Number number{nullptr, column.get, column.whole, 0, field.scale, field.offset};
+    Number number{nullptr, detail::loop_of(column), column.get, column.whole, 0, field.scale, field.offset};
     if (column.needs == PointNeed::attribute) {
       const auto& names = settings_.attributes.names();
       const auto found = std::ranges::find(names, field.name);
@@ -181,36 +237,40 @@ class PointEncoder {
       number.attribute = static_cast<std::size_t>(found - names.begin());
     }
     detail::visit_number_type(field.type, [&]<class Stored>() {
-      number.store = &store_value<Stored>;
+      number.store = &store_values<Stored>;
       if constexpr (std::is_integral_v<Stored>)
-        if (number.whole && number.scale == 1) number.store = &store_whole<Stored>;
+        if (number.whole && number.scale == 1) number.store = &store_wholes<Stored>;
     });
     return number;
   }
 
-  using Frame = std::optional<Pose<frame::World, frame::Instrument>>;  // empty: the world
+  /// Frame of the points of a shot, in memory of the caller if it is the shot's own; null for the world.
+  [[nodiscard]] const Frame* frame_of(const Shot& shot, std::optional<Frame>& own) const {
+    if (!settings_.sensor) return nullptr;
+    return removed() ? &frame_ : &own.emplace(settings_.sensor(shot.tick).inverse());
+  }
 
-  [[nodiscard]] Frame frame_of(const Shot& shot) const {
-    if (!settings_.sensor) return std::nullopt;
-    return removed() ? frame_ : settings_.sensor(shot.tick).inverse();
+  /// Sets the position and the attributes of a point, if they are needed.
+  void set(PointView& view, const Frame* frame) const {
+    if (places_) {
+      const Vec3 point = point_of(view.shot, view.echo);
+      view.position = in_axes(frame ? frame->point(point) : point - settings_.origin);
+    }
+    if (attributes_) view.attributes = settings_.attributes.of(view.echo.object).data();
   }
 
   template <class Use>
-  void see(const EchoBatch& batch, const Shot& shot, const Echo& echo, const Frame& frame, const Use& use) const {
+  void see(const EchoBatch& batch, const Shot& shot, const Echo& echo, const Frame* frame, const Use& use) const {
     PointView view{shot, echo, settings_, start_};
+    set(view, frame);
     std::optional<PointSurface> surface;
     std::optional<PointColour> colour;
-    if (places_) {
-      const Vec3 point = point_of(shot, echo);
-      view.position = in_axes(frame ? frame->point(point) : point - settings_.origin);
-    }
     if (surfaces_)
       if (const std::optional<SurfaceInteraction> at = settings_.surfaces(batch, shot, echo)) {
         const auto turned = [&](const Vec3& v) { return in_axes(frame ? frame->direction(v) : v); };
         view.surface = &surface.emplace(PointSurface{*at, turned(at->normal), turned(at->velocity)});
       }
     if (colours_ && (colour = settings_.colours(batch, shot, echo))) view.colour = &*colour;
-    if (attributes_) view.attributes = settings_.attributes.of(echo.object).data();
     use(view);
   }
 
@@ -225,7 +285,7 @@ class PointEncoder {
   std::vector<Number> numbers_;                                                    // one a field
   bool places_ = false, surfaces_ = false, colours_ = false, attributes_ = false;  // needs
   Tick start_{};
-  Pose<frame::World, frame::Instrument> frame_{};  // of a scan without distortion
+  Frame frame_{};  // of a scan without distortion
 };
 
 /// Point records in memory: a sink that keeps them, and gives them to the writers of files and

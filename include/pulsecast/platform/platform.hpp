@@ -29,6 +29,7 @@ template <Trajectory Path, InstrumentSource Source>
 class Platform {
  public:
   using refinements = refines<tag::MakesLanes>;
+  static constexpr bool strides_lanes = detail::MakesStridedLanes<Source>;
   /// @throws SettingError for settings out of range
   Platform(Path path, Mount mount, Source source)
       : path_(validated(std::move(path))), mount_(validated(mount)), source_(validated(std::move(source))) {}
@@ -39,13 +40,14 @@ class Platform {
 
   [[nodiscard]] std::optional<Pulse<frame::World>> pulse(PulseIndex i) const noexcept { return pulse_lanes(i, 1)[0]; }
 
-  [[nodiscard]] PulseLanes<frame::World> pulse_lanes(PulseIndex i, std::size_t count) const noexcept {
-    const auto inner = find_pulses(source_, i, count);
+  [[nodiscard]] PulseLanes<frame::World> pulse_lanes(PulseIndex i, std::size_t count,
+                                                     PulseIndex step = 1) const noexcept {
+    const auto inner = find_pulses(source_, i, count, step);
     auto out = placed(inner);
     if constexpr (MeasuresBeam<Source>)
       for (std::size_t lane = 0; lane < inner.size; ++lane)
         if (inner.sent[lane] != 0)
-          if (const auto beam = source_.measured(i + lane, inner.tick[lane]))
+          if (const auto beam = source_.measured(i + lane * step, inner.tick[lane]))
             out.report(lane, instrument_at(inner.tick[lane]) * *beam);
     return out;
   }

@@ -16,6 +16,7 @@ requires BeamSource<Source> || InstrumentSource<Source> || WorldSource<Source>
 class Channels {
  public:
   using refinements = refines<tag::MakesLanes>;
+  static constexpr bool strides_lanes = detail::MakesStridedLanes<Source>;
   /// 1 to `max_emitters` channels and emitters, of one size and duration. @throws SettingError
   explicit Channels(std::vector<Source> channels) : channels_(std::move(channels)) {
     require_within("Channels::channels (number)", channels_.size(), 1, max_emitters, "");
@@ -50,11 +51,15 @@ class Channels {
     return pulse_lanes(i, 1)[0];
   }
 
-  [[nodiscard]] auto pulse_lanes(PulseIndex i, std::size_t count) const noexcept {
+  [[nodiscard]] auto pulse_lanes(PulseIndex i, std::size_t count, PulseIndex step = 1) const noexcept {
     const std::size_t n = channels_.size();
-    if (n == 1) return find_pulses(channels_[0], i, count);
+    if (step % n == 0) {  // all of one channel
+      auto all = find_pulses(channels_[i % n], i / n, count, step / n);
+      for (std::uint16_t& emitter : all.emitter) emitter = static_cast<std::uint16_t>(emitter + first_emitter_[i % n]);
+      return all;
+    }
     detail::PulsesOf<Source> all;
-    for (; all.size < count; ++i) {
+    for (; all.size < count; i += step) {
       all.push_back(find_pulses(channels_[i % n], i / n, 1)[0]);
       std::uint16_t& emitter = all.emitter[all.size - 1];
       emitter = static_cast<std::uint16_t>(emitter + first_emitter_[i % n]);

@@ -9,7 +9,8 @@ namespace PULSECAST_NAMESPACE {
 
 /// Pulsed laser at a constant rate: the innermost stage of every pipeline.
 struct Scanner {
-  using refinements = refines<tag::FindsSlots, tag::MakesLanes, tag::Validated>;
+  using refinements = refines<tag::FindsSlots, tag::MakesLanes, tag::StridesLanes, tag::Validated>;
+  static constexpr bool strides_lanes = true;
   double pulse_rate = 100e3;      ///< pulse repetition rate, from 1e-3 to 1e12 [Hz]
   PulseIndex pulses = 1'000'000;  ///< number of slots, at most 2^52, and no longer than 1e15 s
   double delay = 0;               ///< delay after the begin of a slot; less than one slot [s]
@@ -33,11 +34,12 @@ struct Scanner {
 
   [[nodiscard]] std::optional<Pulse<frame::Beam>> pulse(PulseIndex i) const noexcept { return pulse_lanes(i, 1)[0]; }
 
-  [[nodiscard]] PulseLanes<frame::Beam> pulse_lanes(PulseIndex i, std::size_t count) const noexcept {
+  [[nodiscard]] PulseLanes<frame::Beam> pulse_lanes(PulseIndex i, std::size_t count,
+                                                    PulseIndex step = 1) const noexcept {
     PulseLanes<frame::Beam> p;
     p.size = count;
     p.sent = first_lanes(count);
-    p.tick = TickLanes::of(i, pulse_rate) + Tick::of_seconds(delay);
+    p.tick = TickLanes::of(i, pulse_rate, step) + Tick::of_seconds(delay);
     return p;
   }
 

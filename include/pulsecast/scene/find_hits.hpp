@@ -46,9 +46,10 @@ concept FindsGround = requires(const T& map) {
   map.ground_height(Vec2{}, 0.0);
 };
 
-/// Target that finds the hits of pulses of one ray together, those of a bundle of one each.
+/// Target that finds the hits of pulses of one ray together, those of a bundle of one each. It names itself: a type
+/// that inherits it may replace its `closest` of bundles alone.
 template <class T>
-concept TracesSheaves = VisitsMaterials<T> &&
+concept TracesSheaves = VisitsMaterials<T> && std::same_as<typename T::TracesSheaves, T> &&
     requires(const T target, const RaySheaf& rays, double wavelength, std::span<Hit> hits) {
   { target.closest(rays, wavelength, hits) }
   noexcept;

@@ -32,6 +32,7 @@ class Layered {
         },
         targets_);
   }
+  using TracesSheaves = Layered;  ///< as the concept requires
   /// As above, of each ray of a sheaf.
   void closest(const detail::RaySheaf& rays, double wavelength, std::span<Hit> hits) const noexcept
       requires(detail::TracesSheaves<First>&&...&& detail::TracesSheaves<Others>) {

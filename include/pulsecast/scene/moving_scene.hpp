@@ -66,6 +66,7 @@ class MovingScene {
     describe(rays, hits, visit);
   }
 
+  using TracesSheaves = MovingScene;  ///< as the concept requires
   /// As above, of each ray of a sheaf at its own tick; parts that move are met ray by ray.
   void closest(const detail::RaySheaf& rays, double wavelength, std::span<Hit> hits) const noexcept
       requires(detail::TakesSingleRays<Shapes>&&...) {

@@ -108,6 +108,7 @@ class Scene {
     describe(rays, nearest(rays), rays.wavelength, hits, placements(), visit);
   }
 
+  using TracesSheaves = Scene;  ///< as the concept requires
   /// As above, of each ray of a sheaf.
   void closest(const detail::RaySheaf& rays, double wavelength, std::span<Hit> hits) const noexcept
       requires(detail::TakesSingleRays<Shapes>&&...) {
@@ -226,6 +227,11 @@ class Scene {
   void search(const Rays& rays, Hits& hits) const noexcept {
     if constexpr (std::is_same_v<Rays, RayBundle> && (detail::Intersects<Shapes, SingleRayPacket, ClosestHit> && ...))
       if (rays.size == 1) return detail::closest_one_by_one(rays, hits, searcher());  // cheaper in frames of parts
+    if constexpr (std::is_same_v<Rays, detail::RaySheaf>)
+      if (!rays.together) {
+        for (std::size_t j = 0; j < rays.size; ++j) search(rays.rays[j], hits.of[j]);
+        return;
+      }
     const auto test = [&](std::span<const PrimitiveIndex> found) noexcept {
       for (const PrimitiveIndex p : found) closest_in(p, parts_[p].placement, rays, hits);
     };

@@ -104,8 +104,8 @@ class TriangleMesh {
     }
   }
 
-  /// As for each ray of a sheaf, in one traversal. A template, as clang 14 instantiates other members whose requirements
-  /// are not met when it instantiates the class.
+  /// As for each ray of a sheaf, in one traversal. A template, as clang 14 instantiates other members whose
+  /// requirements are not met when it instantiates the class.
   template <std::same_as<detail::SheafHits> Hits>
   void closest(const detail::RaySheaf& rays, Hits& nearest)
       const noexcept requires std::is_same_v<Index, Bvh<float>> && std::is_same_v<Masks, detail::NoMasks> {
@@ -164,16 +164,12 @@ class TriangleMesh {
     const TriangleMesh& mesh;
     const Rays& rays;
     Hits& nearest;
-    [[no_unique_address]] std::array<LineTest, by_line ? Rays::capacity : 0>
-        lines{};  ///< of a single ray, or of each of a sheaf
+    LineTest<Rays> line;  ///< of a single ray, or those of a sheaf
 
-    Test(const TriangleMesh& of, const Rays& by, Hits& found) noexcept : mesh(of), rays(by), nearest(found) {
-      if constexpr (alone) lines[0] = LineTest(by, of.bounds());
+    Test(const TriangleMesh& of, const Rays& by, Hits& found) noexcept
+        : mesh(of), rays(by), nearest(found), line(by, of.bounds()) {
       if constexpr (in_sheaf)
-        for (std::size_t j = 0; j < by.size; ++j) {
-          lines[j] = LineTest(by.rays[j], of.bounds());
-          found.of[j].part = found.part;
-        }
+        for (std::size_t j = 0; j < by.size; ++j) found.of[j].part = found.part;
     }
 
     void operator()(std::span<const PrimitiveIndex> primitives) const noexcept {
@@ -189,10 +185,9 @@ class TriangleMesh {
                       [this](std::size_t j, PrimitiveIndex i) noexcept { return mesh.solid(i, rays, j); });
       test(primitives, triangle_of, detail::SolidEverywhere{});
     }
-    [[gnu::always_inline]] static void meet(const LineTest& line, const TrianglePacket& packet,
-                                            std::span<const PrimitiveIndex> primitives, const SingleRayPacket& ray,
-                                            auto& found, const auto& solid) noexcept {
-      const auto [possible, certain] = line.meet(packet);
+    [[gnu::always_inline]] void meet(const TrianglePacket& packet, std::span<const PrimitiveIndex> primitives,
+                                     const SingleRayPacket& ray, auto& found, const auto& solid) const noexcept {
+      const auto [possible, certain] = line.meet(packet, ray);
       if (possible != 0) intersect(packet, primitives, ray, found, solid, possible == certain ? certain : 0);
     }
     // always inlined, as without masks it is all there is
@@ -200,11 +195,10 @@ class TriangleMesh {
                                      const auto& solid) const noexcept {
       if constexpr (alone) {
         const TrianglePacket packet(primitives.size(), triangle_of);
-        meet(lines[0], packet, primitives, rays, nearest, solid);
+        meet(packet, primitives, rays, nearest, solid);
       } else if constexpr (in_sheaf) {
         const TrianglePacket packet(primitives.size(), triangle_of);
-        for (std::size_t j = 0; j < rays.size; ++j)
-          meet(lines[j], packet, primitives, rays.rays[j], nearest.of[j], solid);
+        for (std::size_t j = 0; j < rays.size; ++j) meet(packet, primitives, rays.rays[j], nearest.of[j], solid);
       } else {
         intersect(primitives, triangle_of, rays, nearest, solid);
       }

@@ -53,6 +53,33 @@ struct DirectLight {
     return result;
   }
 
+  /// Result of a pulse of a single subray, as of `trace`, from its hit and the power that returns from a white surface
+  /// there [W]. Sets the reflection, if there is one.
+  [[nodiscard, gnu::always_inline]] static TransportResult of_hit(const Hit& hit, double white, const RangeGate& gate,
+                                                                  const Laser& laser, Reflection& reflection) noexcept {
+    const double energy = laser.energy();
+    TransportResult result;
+    result.energy.sent = energy;
+    if (!hit.met()) {
+      result.energy.missed = energy;
+      result.nan = std::isnan(hit.range);
+    } else if (!gate.contains(hit.range)) {
+      result.fate = Fate::out_of_range;
+      result.energy.out_of_range = energy;
+    } else {
+      const double power = hit.backscatter * white;
+      result.fate = Fate::absorbed;
+      result.energy.scattered = hit.scattered_share * energy;
+      result.energy.absorbed = (1 - hit.scattered_share) * energy;
+      result.nan = std::isnan(power);
+      if (!(power > 0)) return result;
+      result.energy.received = power * laser.pulse_length;
+      result.reflections = 1;
+      detail::set_reflection(reflection, hit, power);
+    }
+    return result;
+  }
+
  private:
   [[nodiscard]] bool spreads(std::size_t subrays) const noexcept { return spread_planes && subrays > 2; }
 
@@ -73,8 +100,8 @@ struct DirectLight {
                                                    TransportResult& result) noexcept {
     const SubrayDirections& beam = light.beam;
     RayBundle rays;
-    if (!light.hit) detail::set_origin(light, rays);
-    const Matrix3 world_from_beam = light.hit ? Matrix3{} : matrix_of(light.pulse.pose.rotation);
+    detail::set_origin(light, rays);
+    const Matrix3 world_from_beam = matrix_of(light.pulse.pose.rotation);
     const bool from_a_point = beam.from_a_point();
     double missed = 0, out_of_range = 0, absorbed = 0, scattered = 0, received = 0;
     bool met = false, in_gate = false;
@@ -82,12 +109,8 @@ struct DirectLight {
     for (std::size_t first = 0; first < light.subrays; first += rays.size) {
       rays.first_subray = static_cast<std::uint32_t>(first);
       rays.size = std::min(from_a_point ? RayBundle::capacity : 1, light.subrays - first);
-      if (light.hit) {
-        w.hits[0] = *light.hit;
-      } else {
-        detail::set_directions(light, world_from_beam, first, rays);
-        find_hits(target, rays, w.hits);
-      }
+      detail::set_directions(light, world_from_beam, first, rays);
+      find_hits(target, rays, w.hits);
       if (all_missed(light, first, std::span(w.hits).first(rays.size), missed)) continue;
       detail::received_power(light, &beam.shares[first], rays.size, w.hits, power);
       if (!light.record.empty()) detail::record_subrays(light, first, std::span(w.hits).first(rays.size), power);

@@ -20,7 +20,6 @@ struct TransportInput {
   WhiteTarget& white_target;         ///< memory of that budget's last result
   RangeGate gate{};                  ///< range gate of the receiver
   std::span<SubrayRecord> record{};  ///< first surfaces of the subrays, to be set, if recorded
-  const Hit* hit = nullptr;          ///< hit of the only subray; null unless known
 
   /// The same light by other subrays, without a record.
   [[nodiscard]] TransportInput by(const SubrayDirections& others, std::size_t count) const noexcept {

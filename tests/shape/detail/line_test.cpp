@@ -19,7 +19,8 @@ namespace {
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
 bool may_meet(const Triangle& triangle, const SingleRayPacket& ray, const Box& bounds) {
-  return LineTest(ray, bounds).meet(TrianglePacket(1, [&](std::size_t) noexcept { return triangle; })).possible != 0;
+  return LineTest(ray, bounds).meet(TrianglePacket(1, [&](std::size_t) noexcept { return triangle; }), ray).possible !=
+         0;
 }
 
 /// A triangle of any size and shape: some are thin, flat or turned edge on.
@@ -65,9 +66,9 @@ TEST_CASE("each lane of a packet has its own bit, and idle lanes have that of th
   const LineTest line(ray, bounds);
   for (std::size_t met = 0; met < simd::lane_count; ++met) {
     const TrianglePacket packet(simd::lane_count, [&](std::size_t n) noexcept { return n == met ? ahead : beside; });
-    CHECK(line.meet(packet).possible == 1U << met);
+    CHECK(line.meet(packet, ray).possible == 1U << met);
   }
-  CHECK(line.meet(TrianglePacket(1, [&](std::size_t) noexcept { return ahead; })).possible ==
+  CHECK(line.meet(TrianglePacket(1, [&](std::size_t) noexcept { return ahead; }), ray).possible ==
         (1U << simd::lane_count) - 1);
 }
 
@@ -93,7 +94,7 @@ TEST_CASE("no hit is passed over, nor changed by sides known for certain: at any
     const PrimitiveIndex primitive = 0;
     const Box bounds = t.bounds();
     const TrianglePacket packet(1, [&](std::size_t) noexcept { return t; });
-    const LineTest::Met line = LineTest(ray, bounds).meet(packet);
+    const auto line = LineTest(ray, bounds).meet(packet, ray);
     ClosestHit hit(infinity), at_once(infinity);
     intersect(packet, {&primitive, 1}, ray, hit);
     met += hit.met(0) ? 1 : 0;

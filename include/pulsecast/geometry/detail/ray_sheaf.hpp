@@ -13,9 +13,12 @@ namespace PULSECAST_NAMESPACE::detail {
 struct RaySheaf {
   static constexpr std::size_t capacity = 8;  ///< greatest number of rays
 
-  std::array<SingleRayPacket, capacity> rays;  ///< `size` are set
-  std::array<double, capacity> far;            ///< hits of each ray are not beyond [m]
-  std::size_t size = 0;                        ///< rays in use
+  union {
+    std::array<SingleRayPacket, capacity> rays;  ///< `size` are set; in a union, as its members would be initialized
+  };
+  std::array<double, capacity> far;  ///< hits of each ray are not beyond [m]
+  std::size_t size = 0;              ///< rays in use
+  bool together = false;             ///< true if they are worth tracing together, as `enclose` found
 
   static constexpr double near = 0;  ///< at most that of each ray [m]
   Vec3 origin{};                     ///< centre of the box around their origins [m]
@@ -24,29 +27,36 @@ struct RaySheaf {
 
   RaySheaf() noexcept {}  // leaves the rays unset
 
-  void push_back(const SingleRayPacket& ray, double limit) noexcept {
-    rays[size] = ray;
+  [[gnu::always_inline]] void push_back(const SingleRayPacket& ray, double limit) noexcept {
+    std::construct_at(&rays[size], ray);
     far[size++] = limit;
   }
 
   /// Finds what encloses the rays. False if they are not worth tracing together: few, far apart, or
   /// not finite.
-  [[nodiscard]] bool enclose() noexcept {
+  bool enclose() noexcept {
     constexpr double most_apart = 0.1;  // of origins [m] and unit directions: wider sheaves open too many nodes
+    together = false;
     if (size < 3) return false;
-    Vec3 first = rays[0].origin, last = first, sum{};
-    low = high = rays[0].toward;
+    using Axes = simd::Vec4<double>;
+    const auto axes = [](const Vec3& v) noexcept { return Axes(v.x, v.y, v.z); };
+    const auto vector = [](const Axes& v) noexcept { return Vec3(v[0], v[1], v[2]); };
+    Axes nearest = axes(rays[0].origin), farthest = nearest, least = axes(rays[0].toward), most = least, sum(0);
     for (const SingleRayPacket& ray : std::span(rays).first(size)) {
-      first = min(first, ray.origin);
-      last = max(last, ray.origin);
-      low = min(low, ray.toward);
-      high = max(high, ray.toward);
-      sum += ray.origin + ray.toward;
+      const Axes from = axes(ray.origin), along = axes(ray.toward);
+      nearest = simd::min(nearest, from);
+      farthest = simd::max(farthest, from);
+      least = simd::min(least, along);
+      most = simd::max(most, along);
+      sum = sum + (from + along);
     }
+    const Vec3 first = vector(nearest), last = vector(farthest);
+    low = vector(least);
+    high = vector(most);
     origin = 0.5 * (first + last);
     origin_reach = (1 + 0x1p-50) * max(last - origin, origin - first);
-    return finite(sum) &&
-           std::max(max_norm(last - first), max_norm(high - low)) <= most_apart * rays[0].direction_length;
+    return together = finite(vector(sum)) &&
+                      std::max(max_norm(last - first), max_norm(high - low)) <= most_apart * rays[0].direction_length;
   }
 
   [[nodiscard]] double direction_min(int k) const noexcept { return low[k]; }

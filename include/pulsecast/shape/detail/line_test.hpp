@@ -7,11 +7,12 @@
 
 namespace PULSECAST_NAMESPACE {
 
-/// Conservative test of triangles against the line through a single ray, in a third of the
+/// Conservative test of triangles against the line through a ray, in a third of the
 /// operations of `intersect`, which decides about those left. The line is on one side of the three
 /// edges of a triangle that it hits, by the sign of a volume. One bound on the roundings, here and
 /// in `intersect`, holds for all triangles. Infinite and tiny coordinates pass. Source: volume test
 /// of Amanatides & Choi 1997, with products of corners shared by edges; bounds: Higham 2002, ch. 3.
+template <class Rays>
 class LineTest {
  public:
   /// Bit masks of triangles, idle lanes included.
@@ -20,13 +21,13 @@ class LineTest {
     unsigned certain;   ///< those of them that it passes on one side of all edges, whatever the roundings
   };
 
-  LineTest() = default;
-  /// Line through a ray, for triangles within `bounds` [m], both of which outlive it.
-  LineTest(const SingleRayPacket& ray, const Box& bounds) noexcept : ray_(&ray), bounds_(&bounds) {}
+  /// Lines through a ray, or through those of a sheaf, for triangles within `bounds` [m]; both outlive it.
+  LineTest(const Rays& rays, const Box& bounds) noexcept : rays_(rays), bounds_(bounds) {}
 
-  [[nodiscard, gnu::always_inline]] Met meet(const TrianglePacket& triangles) const noexcept {
+  [[nodiscard, gnu::always_inline]] Met meet(const TrianglePacket& triangles,
+                                             const SingleRayPacket& ray) const noexcept {
     if (doubt_ == 0) doubt_ = doubt();
-    const Vec3 origin = ray_->origin, direction = ray_->toward;
+    const Vec3 origin = ray.origin, direction = ray.toward;
     using Corner = TrianglePacket::Corner;
     const auto from_origin = [&](const Corner& p) noexcept -> Corner {
       return {p.x - origin.x, p.y - origin.y, p.z - origin.z};
@@ -56,15 +57,25 @@ class LineTest {
     using Axes = simd::Vec4<double>;
     const auto axes = [](const Vec3& v) noexcept { return Axes(v.x, v.y, v.z); };
     const auto sum = [](const Axes& v) noexcept { return v[0] + v[1] + v[2]; };
-    const Axes origin = axes(ray_->origin);
-    const double reach = sum(max(magnitude(axes(bounds_->min) - origin), magnitude(axes(bounds_->max) - origin))),
-                 speed = ray_->direction_length + sum(magnitude(axes(ray_->toward)));
+    const Axes origin = axes(rays_.origin);
+    Axes reaches = max(magnitude(axes(bounds_.min) - origin), magnitude(axes(bounds_.max) - origin)), speeds(0);
+    double speed = 0;
+    if constexpr (Rays::capacity > 1) {
+      reaches = reaches + axes(rays_.origin_reach);
+      speeds = max(magnitude(axes(rays_.low)), magnitude(axes(rays_.high)));
+      speed = rays_.rays[0].direction_length;
+    } else {
+      speeds = magnitude(axes(rays_.toward));
+      speed = rays_.direction_length;
+    }
+    const double reach = sum(reaches);
+    speed += sum(speeds);
     const double doubt = 32 * std::numeric_limits<double>::epsilon() * reach * reach * speed + tiny;
     return doubt < huge ? doubt : detail::infinity;
   }
 
-  const SingleRayPacket* ray_ = nullptr;
-  const Box* bounds_ = nullptr;
+  const Rays& rays_;
+  const Box& bounds_;
   mutable double doubt_ =
       0;  ///< volume below which a side is in doubt [m^2 times that of directions]; 0 before the first use
 };

@@ -25,15 +25,6 @@ namespace PULSECAST_NAMESPACE::detail {
   light.beam.to_world(world_from_beam, first, rays);
 }
 
-/// Ray of a pulse of one subray.
-[[nodiscard]] inline SingleRayPacket only_ray(const TransportInput& light) noexcept {
-  RayBundle rays;
-  set_origin(light, rays);
-  rays.size = 1;
-  set_directions(light, matrix_of(light.pulse.pose.rotation), 0, rays);
-  return SingleRayPacket(rays.ray(0));
-}
-
 /// Takes away what the receiver does not see of the power of a bundle [W].
 [[gnu::noinline]] inline void keep_in_view(const LinkBudget& budget, std::span<const Hit> hits,
                                            RayBundle::Column& power) noexcept {
