@@ -35,9 +35,15 @@ struct PulseShape {
   [[nodiscard]] double end() const noexcept { return 60 * tau; }
 
   /// Power at time t since the peak [s]; 1 at t = 0.
-  [[nodiscard]] double operator()(double t) const noexcept {
-    const double u = t / tau + peak;
-    return u > 0 ? u * u * exponential(-u) * to_unit_peak : 0;
+  [[nodiscard]] double operator()(double t) const noexcept { return at(t); }
+  /// As above, at times of lanes.
+  [[nodiscard]] simd::Doubles operator()(const simd::Doubles& t) const noexcept { return at(t); }
+
+ private:
+  template <class Number>
+  [[nodiscard]] Number at(const Number& t) const noexcept {
+    const Number u = t / tau + peak;
+    return u > 0 ? u * u * exponential(Number(-u)) * to_unit_peak : Number{};
   }
 };
 

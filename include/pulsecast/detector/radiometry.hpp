@@ -160,9 +160,10 @@ class LinkBudget {
   }
 
   /// Received power of a subray, or several [W], if the receiver sees all of the light.
+  // always inlined: lanes of it were passed through memory
   template <class Number>
-  [[nodiscard]] Number power_in_view(const Number& share, const Number& backscatter,
-                                     const Number& range) const noexcept {
+  [[nodiscard, gnu::always_inline]] Number power_in_view(const Number& share, const Number& backscatter,
+                                                         const Number& range) const noexcept {
     return gain_ * share * backscatter / (range * range + near_) * exponential(Number(both_ways_ * range));
   }
 

@@ -281,7 +281,8 @@ class Scene {
       const detail::SurfaceSampler<Part, Rays> sampler{parts_[at], nearest.primitive_of(first), *local, first};
       const detail::SurfaceSample surface = visit_shape(sampler, parts_[at].geometry);
       // neighbouring rays often hit the same primitive
-      while (end < rays.size && nearest.id[end] == nearest.id[first] && surface.uniform) ++end;
+      if (surface.uniform)
+        while (end < rays.size && nearest.id[end] == nearest.id[first]) ++end;
       const Vec3 n = surface.normal / local->direction_length;
       const ObjectId object = parts_[at].object;
       const std::uint16_t classification = surface.material->classification;

@@ -2,6 +2,9 @@
 // SPDX-License-Identifier: MIT
 #include <pulsecast/detector/detail/peaks.hpp>
 
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
 #include <vector>
 
 #include <doctest/doctest.h>
@@ -67,7 +70,8 @@ TEST_CASE("after an echo, the receiver is blind for its dead time, whatever come
 TEST_CASE("of too many echoes, the first are kept, and those of the air only where there is room; or the strongest") {
   const auto kept_of = [](KeptReturns which, std::size_t most, const std::vector<Echo>& all) {
     std::vector<Echo> echoes;
-    for (const Echo& echo : all) keep_return(echo, WaveformSettings{.returns_max = most, .returns_kept = which}, echoes);
+    for (const Echo& echo : all)
+      keep_return(echo, WaveformSettings{.returns_max = most, .returns_kept = which}, echoes);
     std::vector<double> ranges;
     for (const Echo& echo : echoes) ranges.push_back(echo.range);
     return ranges;
@@ -158,4 +162,30 @@ TEST_CASE("an echo is made of the reflections between its valleys, and has the l
                               std::span(reflections).subspan(1), shape, EchoTiming::true_range, NoContinuous{});
   CHECK(nobody.range == support::relative(15, 1e-12));
   CHECK(nobody.object == 0);
+}
+
+TEST_CASE("an echo has the labels of the greatest share at its peak, the first of equal ones, of any number") {
+  const PulseShape shape(3.5e-9);
+  for (std::uint64_t seed = 0; seed < 1000; ++seed) {
+    CAPTURE(seed);
+    support::Generator any(seed);
+    std::vector<Reflection> reflections(1 + any.whole(40));
+    const bool alike = any.coin();
+    for (std::size_t i = 0; i < reflections.size(); ++i)
+      reflections[i] = {any.coin() ? 20 : any.uniform(19, 21), alike ? 1 : any.log_uniform(0.1, 10), 0};
+    std::sort(reflections.begin(), reflections.end(),
+              [](const Reflection& a, const Reflection& b) { return a.range < b.range; });
+    for (std::size_t i = 0; i < reflections.size(); ++i) reflections[i].object = static_cast<ObjectId>(i + 1);
+    const double time = 2 * any.uniform(18, 26) / speed_of_light;
+    ObjectId expected = 0;
+    double most = 0;
+    for (const Reflection& r : reflections) {
+      const double share = r.power * shape(time - arrival(r));
+      if (!(share > most * (1 + 1e-14))) continue;
+      most = share;
+      expected = r.object;
+    }
+    CHECK(echo_of({.time = time, .mark = time}, reflections, shape, EchoTiming::peak, NoContinuous{}).object ==
+          expected);
+  }
 }

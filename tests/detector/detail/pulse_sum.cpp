@@ -2,7 +2,10 @@
 // SPDX-License-Identifier: MIT
 #include <pulsecast/detector/detail/pulse_sum.hpp>
 
+#include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <limits>
 #include <vector>
 
@@ -30,6 +33,36 @@ TEST_CASE("reflections are sorted by range, and what cannot be an echo is left o
   REQUIRE(useful.size() == 3);
   for (std::size_t i = 0; i < 3; ++i) CHECK(useful[i].object == i + 1);
   CHECK(in_order_of_range({}, 1).empty());
+}
+
+TEST_CASE("reflections of equal ranges keep their order, up to as many as a bundle has rays") {
+  for (std::uint64_t seed = 0; seed < 2000; ++seed) {
+    CAPTURE(seed);
+    support::Generator any(seed);
+    std::vector<Reflection> all(any.whole(RayBundle::capacity + 1));
+    const std::uint64_t ranges = 1 + any.whole(2 * RayBundle::capacity);
+    for (std::size_t i = 0; i < all.size(); ++i)
+      all[i] = {0.1 + static_cast<double>(any.whole(ranges)), any.uniform(), static_cast<ObjectId>(i)};
+    std::vector<Reflection> expected = all;
+    const auto nearer = [](const Reflection& a, const Reflection& b) { return a.range < b.range; };
+    std::stable_sort(expected.begin(), expected.end(), nearer);
+    const auto sorted = in_order_of_range(all, 0.25e-9);
+    REQUIRE(sorted.size() == expected.size());
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      CHECK(sorted[i].range == expected[i].range);
+      CHECK(sorted[i].power == expected[i].power);
+      CHECK(sorted[i].object == expected[i].object);
+    }
+  }
+}
+
+TEST_CASE("more reflections than a bundle has rays are sorted, too") {
+  support::Generator any(1);
+  std::vector<Reflection> all(3 * RayBundle::capacity);
+  for (Reflection& r : all) r = {any.uniform(1, 2), 1};
+  const auto sorted = in_order_of_range(all, 0.25e-9);
+  REQUIRE(sorted.size() == all.size());
+  for (std::size_t i = 1; i < sorted.size(); ++i) CHECK(sorted[i - 1].range <= sorted[i].range);
 }
 
 TEST_CASE("sums of pulses, sample by sample, are those of their definition, wherever the samples begin") {

@@ -4,10 +4,13 @@
 
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <numbers>
 #include <vector>
 
 #include <doctest/doctest.h>
+
+#include "support/generators.hpp"
 
 using namespace pulsecast;
 
@@ -84,4 +87,20 @@ TEST_CASE("peaks do not depend on where the window is cut") {
   const double cycles = static_cast<double>(y.size()) / 37.3;
   CHECK(std::fabs(static_cast<double>(peaks.size()) - cycles) < 2);
   for (std::size_t k = 1; k < peaks.size(); ++k) REQUIRE(std::fabs(peaks[k].time - peaks[k - 1].time - 37.3) < 0.01);
+}
+
+TEST_CASE("every maximum of any number of samples is found") {
+  for (std::uint64_t seed = 0; seed < 1000; ++seed) {
+    CAPTURE(seed);
+    support::Generator any(seed);
+    std::vector<double> y(5 + any.whole(40));
+    for (double& sample : y) sample = any.uniform(1, 2);
+    std::vector<std::size_t> expected;
+    for (std::size_t i = 2; i + 2 < y.size(); ++i)
+      if (y[i] > y[i - 1] && y[i] > y[i + 1]) expected.push_back(i);
+    const auto peaks = peaks_of(y, {.sample_interval = 1, .threshold = 1, .separation = 0, .window = 0});
+    REQUIRE(peaks.size() == expected.size());
+    for (std::size_t k = 0; k < peaks.size(); ++k)
+      CHECK(std::fabs(peaks[k].time - static_cast<double>(expected[k])) <= 1);
+  }
 }

@@ -67,6 +67,9 @@ class BandLimitedSamples {
   struct Shape {
     const ReceivedPulse& pulse;  ///< about the arrival
     [[nodiscard]] double operator()(double t) const noexcept { return pulse(t + pulse.peak()); }
+    [[nodiscard]] simd::Doubles operator()(const simd::Doubles& t) const noexcept {
+      return simd::generate([&](std::size_t lane) noexcept { return (*this)(t[lane]); });
+    }
     [[nodiscard]] double begin() const noexcept { return pulse.begin() - pulse.peak(); }
     [[nodiscard]] double end() const noexcept { return pulse.end() - pulse.peak(); }
   };

@@ -104,7 +104,7 @@ struct OnlyPeak {
   const Reflection* strongest = nullptr;  ///< reflection with the greatest share of it
 };
 
-/// Echo of a peak of the sum of reflections, sorted by range. `shape(t)` is the pulse at t since
+/// Echo of a peak of the sum of reflections, sorted by range. `shape(t)` is the pulse at lanes of times t since
 /// its peak, from `shape.begin()` to `shape.end()` [s]. `continuous(peak, solid, met)` gives the
 /// continuous return that it is of, or none, by the power of reflections in it [W] and if any are.
 [[nodiscard]] Echo echo_of(const Peak& peak, std::span<const Reflection> reflections, const auto& shape,
@@ -113,16 +113,27 @@ struct OnlyPeak {
   const auto from = [&](double time) noexcept { return reflections.data() + detail::first_arrival(reflections, time); };
   Echo echo{.range = range_at(peak.mark), .amplitude = peak.height, .width = peak.width};
   double strongest = 0, solid = 0;
-  for (auto r = from(peak.time - shape.end()); r != end && arrival(*r) < peak.time - shape.begin(); ++r) {
-    if (!continuous.needs_sum() && !(r->power > strongest)) continue;  // power is its maximum
-    const double power = r->power * shape(peak.time - arrival(*r));
-    solid += power;
-    if (!(power > strongest)) continue;
-    strongest = power;
-    echo.cos_incidence = r->cos_incidence;
-    echo.object = r->object;
-    echo.classification = r->classification;
-    echo.kind = r->kind;
+  const Reflection* most = nullptr;
+  for (auto r = from(peak.time - shape.end()), last = from(peak.time - shape.begin()); r < last;) {
+    const auto size = std::min<std::size_t>(simd::lane_count, static_cast<std::size_t>(last - r));
+    const auto of = [&](double Reflection::*member) noexcept {
+      return simd::generate([&](std::size_t lane) noexcept { return r[std::min(lane, size - 1)].*member; });
+    };
+    const simd::Doubles powers =
+        of(&Reflection::power) * shape(simd::Doubles(peak.time - 2 * of(&Reflection::range) / speed_of_light));
+    for (std::size_t lane = 0; lane < size; ++lane, ++r) {
+      if (!continuous.needs_sum() && !(r->power > strongest)) continue;  // power is its maximum
+      solid += powers[lane];
+      if (!(powers[lane] > strongest)) continue;
+      strongest = powers[lane];
+      most = r;
+    }
+  }
+  if (most) {
+    echo.cos_incidence = most->cos_incidence;
+    echo.object = most->object;
+    echo.classification = most->classification;
+    echo.kind = most->kind;
   }
   if (const ContinuousReturn* const r = continuous(peak, solid, strongest > 0)) {
     echo.cos_incidence = 1;

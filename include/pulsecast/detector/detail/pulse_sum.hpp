@@ -20,6 +20,32 @@ namespace detail {
 [[nodiscard]] inline std::size_t first_arrival(std::span<const Reflection> all, double time) noexcept {
   return first_not(all.size(), [&](std::size_t i) { return arrival(all[i]) < time; });
 }
+
+/// Sorts up to `RayBundle::capacity` reflections by range, those of equal ranges as they come. Each moves once, to its
+/// rank, which lanes count without branches.
+inline void sort_by_rank(std::span<Reflection> all) noexcept {
+  static_assert(std::is_trivially_copyable_v<Reflection>);
+  std::array<double, RayBundle::capacity> ranges;
+  std::array<std::int64_t, RayBundle::capacity> ranks;
+  alignas(Reflection) std::array<std::byte, RayBundle::capacity * sizeof(Reflection)> copies;
+  std::memcpy(copies.data(), all.data(), all.size_bytes());
+  for (std::size_t i = 0; i < all.size(); ++i) ranges[i] = all[i].range;
+  for (std::size_t i = all.size(); i % simd::lane_count != 0; ++i) ranges[i] = infinity;
+  const auto places = simd::generate([](std::size_t lane) { return static_cast<double>(lane); });
+  for (std::size_t block = 0; block < all.size(); block += simd::lane_count) {
+    const auto own = simd::load<simd::Doubles>(ranges[block]);
+    simd::Mask rank{};
+    for (std::size_t i = 0; i < block; i += simd::lane_count)
+      for (std::size_t lane = 0; lane < simd::lane_count; ++lane) rank -= ranges[i + lane] <= own;
+    for (std::size_t lane = 0; lane < simd::lane_count; ++lane)
+      rank -= (ranges[block + lane] < own) | ((ranges[block + lane] == own) & (static_cast<double>(lane) < places));
+    for (std::size_t i = block + simd::lane_count; i < all.size(); i += simd::lane_count)
+      for (std::size_t lane = 0; lane < simd::lane_count; ++lane) rank -= ranges[i + lane] < own;
+    simd::store(rank, ranks[block]);
+  }
+  for (std::size_t i = 0; i < all.size(); ++i)
+    std::memcpy(&all[static_cast<std::size_t>(ranks[i])], &copies[i * sizeof(Reflection)], sizeof(Reflection));
+}
 }  // namespace detail
 
 /// Echo of a range [m] and an amplitude [W] with the labels of a reflection.
@@ -43,15 +69,21 @@ namespace detail {
   return (power > 0) & (range < 0x1p51 * speed_of_light * sample_interval);
 }
 
-/// Sorts reflections by range and drops those that cannot be echoes.
+/// Sorts reflections by range and drops those that cannot be echoes. Up to `RayBundle::capacity` of equal ranges keep
+/// their order.
 [[nodiscard]] inline std::span<Reflection> in_order_of_range(std::span<Reflection> all,
                                                              double sample_interval) noexcept {
   const auto nearer = [](const Reflection& a, const Reflection& b) { return a.range < b.range; };
   const auto useless = [&](const Reflection& r) { return !can_count(r.power, r.range, sample_interval); };
   Reflection* const begin = all.data();
   Reflection* const end = std::remove_if(begin, begin + all.size(), useless);
-  if (!std::is_sorted(begin, end, nearer)) std::sort(begin, end, nearer);
-  return {begin, static_cast<std::size_t>(end - begin)};
+  const std::span<Reflection> useful(begin, end);
+  if (std::is_sorted(begin, end, nearer)) return useful;
+  if (useful.size() <= RayBundle::capacity)
+    detail::sort_by_rank(useful);
+  else
+    std::sort(begin, end, nearer);
+  return useful;
 }
 
 /// Sum of the pulse shapes of reflections, sorted by range, sample by sample. Three moments about

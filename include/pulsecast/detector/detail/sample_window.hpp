@@ -50,6 +50,20 @@ class SampleWindow {
     return y.size() - 2;
   }
 
+  /// First sample from i on, not before 1, that is above the one before and not below the next; `end`, which is not the
+  /// last, or later if there is none.
+  [[nodiscard]] std::size_t next_maximum(std::size_t i, std::size_t end) const noexcept {
+    const double* const y = samples_.data();
+    for (; i + simd::lane_count <= end; i += simd::lane_count) {
+      const auto at = simd::load<simd::Doubles>(y[i]);
+      const unsigned maxima =
+          simd::bits((at > simd::load<simd::Doubles>(y[i - 1])) & (at >= simd::load<simd::Doubles>(y[i + 1])));
+      if (maxima != 0) return i + static_cast<std::size_t>(std::countr_zero(maxima));
+    }
+    while (i < end && !(y[i] > y[i - 1] && y[i] >= y[i + 1])) ++i;
+    return i;
+  }
+
   [[nodiscard]] std::size_t last_of_plateau(std::size_t i) const noexcept {
     while (i + 1 < samples_.size() && samples_[i + 1] == samples_[i]) ++i;
     return i;
@@ -76,8 +90,7 @@ class SampleWindow {
       return time(i) + detail::vertex(&below[2]).offset * s.sample_interval;
     };
     std::size_t entered = peaks.size();
-    for (std::size_t i = 2; i < end; ++i) {
-      if (!(y[i] > y[i - 1] && y[i] >= y[i + 1])) continue;
+    for (std::size_t i = next_maximum(2, end); i < end; i = next_maximum(i + 1, end)) {
       const std::size_t plateau_end = last_of_plateau(i);
       if (plateau_end + 1 < y.size() && y[plateau_end + 1] > y[i]) continue;  // a step of the rise
       const detail::Vertex top = top_of(i, plateau_end);

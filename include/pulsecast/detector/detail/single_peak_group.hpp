@@ -34,11 +34,12 @@ class SinglePeakGroup {
     const std::size_t n = reflections.size();
     simd::Doubles low = simd::Doubles{} + std::numeric_limits<double>::infinity(), high{};
     simd::Mask useless{};
+    std::array<const Reflection*, simd::lane_count> from;
+    for (std::size_t lane = 0; lane < from.size(); ++lane) from[lane] = &reflections[lane < n ? lane : 0];
     for (std::size_t next = 0; next < n; next += simd::lane_count) {
       const std::size_t j = n < simd::lane_count ? 0 : std::min(next, n - simd::lane_count);  // the last ones overlap
       const auto of = [&](double Reflection::*member) noexcept {
-        return simd::generate(
-            [&](std::size_t lane) noexcept { return reflections[j + (lane < n ? lane : 0)].*member; });
+        return simd::generate([&](std::size_t lane) noexcept { return from[lane][j].*member; });
       };
       const simd::Doubles range = of(&Reflection::range), power = of(&Reflection::power);
       low = simd::min(range, low);

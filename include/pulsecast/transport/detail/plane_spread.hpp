@@ -205,12 +205,19 @@ inline void set_row(SubrayDirections& row, std::size_t size, const Emitter& emit
 /// Span of the ranges of direct reflections, in deviations of the pulse.
 [[nodiscard]] inline double span_of_ranges(const TransportInput& light,
                                            std::span<const Reflection> reflections) noexcept {
-  double nearest = std::numeric_limits<double>::infinity(), farthest = 0;
-  for (const Reflection& r : reflections) {
-    nearest = r.range < nearest ? r.range : nearest;
-    farthest = r.range > farthest ? r.range : farthest;
+  simd::Doubles nearest = simd::Doubles{} + std::numeric_limits<double>::infinity(), farthest{};
+  const std::size_t n = reflections.size();
+  std::size_t j = n % simd::lane_count;
+  for (const Reflection& r : reflections.first(j)) {
+    nearest = simd::min(r.range - simd::Doubles{}, nearest);
+    farthest = simd::max(r.range - simd::Doubles{}, farthest);
   }
-  return (farthest - nearest) / (std::sqrt(3.0) * detail::pulse_constant(light.emitter.laser));
+  for (; j < n; j += simd::lane_count) {
+    const simd::Doubles range = simd::generate([&](std::size_t lane) noexcept { return reflections[j + lane].range; });
+    nearest = simd::min(range, nearest);
+    farthest = simd::max(range, farthest);
+  }
+  return (simd::max(farthest) - simd::min(nearest)) / (std::sqrt(3.0) * detail::pulse_constant(light.emitter.laser));
 }
 
 /// Spreads the light of a pulse over the smooth surface that its subrays met obliquely, if they
