@@ -108,6 +108,18 @@ template <class Rays, class Hits, class Solid = detail::SolidEverywhere>
   // the 1-norm bounds each sum of products, which is at most seven roundings off
   struct Planes {
     simd::Doubles x, y, z, doubt;
+
+    // bounds of the side of all rays, with once more rounding; always inlined, as products are then shared
+    [[nodiscard, gnu::always_inline]] simd::Doubles most(const Rays& rays) const noexcept {
+      return simd::max(x * rays.direction_min(0), x * rays.direction_max(0)) +
+             simd::max(y * rays.direction_min(1), y * rays.direction_max(1)) +
+             simd::max(z * rays.direction_min(2), z * rays.direction_max(2));
+    }
+    [[nodiscard, gnu::always_inline]] simd::Doubles least(const Rays& rays) const noexcept {
+      return simd::min(x * rays.direction_min(0), x * rays.direction_max(0)) +
+             simd::min(y * rays.direction_min(1), y * rays.direction_max(1)) +
+             simd::min(z * rays.direction_min(2), z * rays.direction_max(2));
+    }
   };
   const simd::Doubles tolerance = simd::Doubles{} + 4 * unit * rays.direction_length;
   const auto planes = [&](const Corner& from, const Corner& to) noexcept -> Planes {
@@ -121,16 +133,6 @@ template <class Rays, class Hits, class Solid = detail::SolidEverywhere>
   unsigned candidates = (1U << primitives.size()) - 1;
 
   // no ray is inside where all pass one plane on its right and one on its left; once more rounding
-  const auto most = [&](const Planes& p) noexcept {
-    return simd::max(p.x * rays.direction_min(0), p.x * rays.direction_max(0)) +
-           simd::max(p.y * rays.direction_min(1), p.y * rays.direction_max(1)) +
-           simd::max(p.z * rays.direction_min(2), p.z * rays.direction_max(2));
-  };
-  const auto least = [&](const Planes& p) noexcept {
-    return simd::min(p.x * rays.direction_min(0), p.x * rays.direction_max(0)) +
-           simd::min(p.y * rays.direction_min(1), p.y * rays.direction_max(1)) +
-           simd::min(p.z * rays.direction_min(2), p.z * rays.direction_max(2));
-  };
   if (!single || certain == 0) {
     ab = planes(a, b);
     bc = planes(b, c);
@@ -143,8 +145,9 @@ template <class Rays, class Hits, class Solid = detail::SolidEverywhere>
       may_meet = ((u >= -ab.doubt) & (v >= -bc.doubt) & (w >= -ca.doubt)) |
                  ((u <= ab.doubt) & (v <= bc.doubt) & (w <= ca.doubt));
     } else {
-      may_meet = ((most(ab) >= -4 * ab.doubt) & (most(bc) >= -4 * bc.doubt) & (most(ca) >= -4 * ca.doubt)) |
-                 ((least(ab) <= 4 * ab.doubt) & (least(bc) <= 4 * bc.doubt) & (least(ca) <= 4 * ca.doubt));
+      may_meet =
+          ((ab.most(rays) >= -4 * ab.doubt) & (bc.most(rays) >= -4 * bc.doubt) & (ca.most(rays) >= -4 * ca.doubt)) |
+          ((ab.least(rays) <= 4 * ab.doubt) & (bc.least(rays) <= 4 * bc.doubt) & (ca.least(rays) <= 4 * ca.doubt));
     }
     candidates &= simd::bits(may_meet);
   } else {
@@ -226,9 +229,9 @@ template <class Rays, class Hits, class Solid = detail::SolidEverywhere>
     }
   } else {
     // triangles that all rays hit between the edges, certainly
-    const unsigned around =
-        simd::bits(((least(ab) > 4 * ab.doubt) & (least(bc) > 4 * bc.doubt) & (least(ca) > 4 * ca.doubt)) |
-                   ((most(ab) < -4 * ab.doubt) & (most(bc) < -4 * bc.doubt) & (most(ca) < -4 * ca.doubt)));
+    const unsigned around = simd::bits(
+        ((ab.least(rays) > 4 * ab.doubt) & (bc.least(rays) > 4 * bc.doubt) & (ca.least(rays) > 4 * ca.doubt)) |
+        ((ab.most(rays) < -4 * ab.doubt) & (bc.most(rays) < -4 * bc.doubt) & (ca.most(rays) < -4 * ca.doubt)));
     for (; candidates != 0; candidates &= candidates - 1) {
       const auto t = static_cast<std::size_t>(std::countr_zero(candidates));
       const PrimitiveIndex primitive = primitives[t];
