@@ -84,7 +84,8 @@ class MtlReader : private StatementBuffer {
     const std::vector<std::string_view>& given = words();
     if (const char* const expected = expected_words(keyword(), given)) require(false, expected);
     if (is_first) ready = "newmtl default" + exponent;
-    const auto share = given.empty() ? std::nullopt : number_in<double>(given[0]);
+    const double share =
+        number_in<double>(given.empty() ? "" : given[0]).value_or(std::numeric_limits<double>::quiet_NaN());
     const bool is_clear = (keyword() == "d" && share != 1.0) || (keyword() == "Tr" && share != 0.0);
     notes_.keep(!is_clear ? keyword() : keyword() == "d" ? "d below 1" : "Tr above 0", path(), line(), statement());
     const bool is_light = rule_of(mtl_rules, keyword()) == rule_of(mtl_rules, "illum");
@@ -99,7 +100,7 @@ class MtlReader : private StatementBuffer {
     else if (keyword() == "Ns")
       ready += standard_numbers(given, 1);
     // with textures, tinyobjloader would change the colour, depending on the order
-    else if (is_light && (!share || (keyword() == "illum" && *share > 10)))
+    else if (is_light && !(share <= (keyword() == "illum" ? 10 : std::numeric_limits<double>::infinity())))
       note("is ignored: expected numbers, of illum from 0 to 10");
     else if (is_light || keyword().starts_with("helios_") || keyword().starts_with("pulsecast_"))
       ready += statement();
