@@ -10,6 +10,7 @@
 
 #include <doctest/doctest.h>
 
+#include <pulsecast/io/detail/mesh_file/mesh_rules.hpp>
 #include <pulsecast/material/microfacet.hpp>
 #include <pulsecast/material/retroreflector.hpp>
 #include <pulsecast/material/water_types.hpp>

@@ -5,6 +5,7 @@
 
 #include <pulsecast/base/compiled.hpp>
 #include <pulsecast/io/detail/material_pictures.hpp>
+#include <pulsecast/io/format_rules.hpp>
 
 namespace PULSECAST_NAMESPACE::io {
 
@@ -30,17 +31,6 @@ struct SpectrumFile {
 /// spectrum is named as its file without the extension. @throws FileError without any spectrum
 [[nodiscard]] SpectralLibrary read_spectral_library(const std::filesystem::path& path);
 
-}  // namespace PULSECAST_NAMESPACE::io
-
-#if PULSECAST_DEFINES(IO_SPECTRAL_LIBRARY)
-#include <cmath>
-#include <limits>
-
-#include <pulsecast/io/detail/text/table.hpp>
-#include <pulsecast/io/format_rules.hpp>
-
-namespace PULSECAST_NAMESPACE::io {
-
 namespace detail {
 
 /// Keys of a header, and words that stand before `reflect` in units or titles, in small letters. Source: ECOSTRESS
@@ -54,6 +44,20 @@ inline constexpr auto spectrum_rules = std::to_array<FormatRule>({
     {"10000, mille", FormatUse::refused, "reflectance in fractions or percent"},
     {"*", FormatUse::read, "nothing: other lines of a header"},
 });
+
+}  // namespace detail
+
+}  // namespace PULSECAST_NAMESPACE::io
+
+#if PULSECAST_DEFINES(IO_SPECTRAL_LIBRARY)
+#include <cmath>
+#include <limits>
+
+#include <pulsecast/io/detail/text/table.hpp>
+
+namespace PULSECAST_NAMESPACE::io {
+
+namespace detail {
 
 /// Unit of the first column.
 enum class WavelengthUnit : std::uint8_t { metre, micrometre, nanometre, wavenumber };

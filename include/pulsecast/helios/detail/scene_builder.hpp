@@ -7,7 +7,6 @@
 
 #include <pulsecast/helios/detail/motion.hpp>
 #include <pulsecast/helios/scene.hpp>
-#include <pulsecast/io/input_file.hpp>
 #include <pulsecast/io/mtl.hpp>
 #include <pulsecast/material/variation.hpp>
 #include <pulsecast/scene/on_ground.hpp>
