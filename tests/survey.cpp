@@ -1001,8 +1001,10 @@ static_assert(WorldSource<Erratic>);
 template <class Map>
 struct Counted : Map {
   std::shared_ptr<std::atomic<std::size_t>> together = std::make_shared<std::atomic<std::size_t>>(0);
-  using Map::closest;
   using TracesSheaves = Counted;
+  // as a using-declaration would bring in the constrained one of sheaves, too, which is better than that below
+  void closest(const auto&... arguments) const noexcept requires requires(const Map& map) { map.closest(arguments...); }
+  { Map::closest(arguments...); }
   void closest(const pulsecast::detail::RaySheaf& rays, double wavelength, std::span<Hit> hits) const noexcept {
     *together += rays.size;
     Map::closest(rays, wavelength, hits);

@@ -210,8 +210,8 @@ class PointEncoder {
     } else {
       for (std::size_t k = 0; k < views.size(); ++k) values[k] = number.of(views[k]);
     }
-    record += number.offset;
-    for (std::size_t k = 0; k < views.size(); ++k) detail::store_number<Stored>(values[k], record + k * size);
+    for (std::size_t k = 0; k < views.size(); ++k)
+      detail::store_number<Stored>(values[k], record + k * size + number.offset);
   }
   template <class Stored>
   static void store_wholes(const Number& number, std::span<const PointView> views, std::byte* record,
