@@ -3,7 +3,6 @@
 #ifndef PULSECAST_BASE_EXPONENTIAL_HPP
 #define PULSECAST_BASE_EXPONENTIAL_HPP
 
-#include <bit>
 #include <concepts>
 
 #include <pulsecast/base/simd.hpp>
@@ -14,10 +13,6 @@
 namespace PULSECAST_NAMESPACE {
 
 namespace simd::detail {
-/// Bits of a number, or of the lanes of a vector. Unsigned: sums may overflow in unused lanes.
-template <class V>
-using Bits = std::conditional_t<std::same_as<V, double>, std::uint64_t, Vec<std::uint64_t, sizeof(V) / 8>>;
-
 /// Polynomial in x by Horner's rule, its coefficients from the highest power down.
 template <class V, class... Lower>
 [[nodiscard, gnu::always_inline]] constexpr V polynomial(const V& x, double highest, double second,

@@ -3,6 +3,7 @@
 #ifndef PULSECAST_BASE_SIMD_HPP
 #define PULSECAST_BASE_SIMD_HPP
 
+#include <bit>
 #include <cstring>
 #include <type_traits>
 #include <utility>
@@ -64,6 +65,18 @@ template <class V>
 template <class V>
 [[nodiscard]] inline V max(const V& a, const V& b) noexcept {
   return a > b ? a : b;
+}
+
+namespace detail {
+/// Bits of a number, or of the lanes of a vector. Unsigned: sums may overflow in unused lanes.
+template <class V>
+using Bits = std::conditional_t<std::is_same_v<V, double>, std::uint64_t, Vec<std::uint64_t, sizeof(V) / 8>>;
+}  // namespace detail
+
+/// Magnitude of a number of double precision, or of each lane of a vector.
+template <class V>
+[[nodiscard, gnu::always_inline]] inline V magnitude(const V& v) noexcept {
+  return std::bit_cast<V>(static_cast<detail::Bits<V>>(std::bit_cast<detail::Bits<V>>(v) & 0x7FFF'FFFF'FFFF'FFFF));
 }
 
 /// Numbers that a sum over a column adds up side by side, in one register or two: the same for

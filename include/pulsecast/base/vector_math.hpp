@@ -36,10 +36,6 @@ template <class V>
   const Bits<V> bits = (bits_of(x) & ~sign_bit) | (bits_of(sign) & sign_bit);
   return std::bit_cast<V>(bits);
 }
-template <class V>
-[[nodiscard, gnu::always_inline]] inline V magnitude(const V& x) noexcept {
-  return std::bit_cast<V>(static_cast<Bits<V>>(bits_of(x) & ~sign_bit));
-}
 /// True if a comparison holds in any lane.
 [[nodiscard]] inline bool any(bool mask) noexcept { return mask; }
 [[nodiscard, gnu::always_inline]] inline bool any(const auto& mask) noexcept {
@@ -136,7 +132,7 @@ template <class V>
   const auto odd = (angle.quarters & 1) != 0;
   const detail::Bits<V> sine_sign = (angle.quarters & 2) << 62, cosine_sign = ((angle.quarters + 1) & 2) << 62;
   const V sine_or = odd ? cosine : sine, cosine_or = odd ? sine : cosine;
-  const V size = detail::magnitude(x);
+  const V size = magnitude(x);
   const V turned = std::bit_cast<V>(static_cast<detail::Bits<V>>(detail::bits_of(sine_or) ^ sine_sign));
   SineCosine<V> both{size < 0x1p-27 ? x : turned,
                      std::bit_cast<V>(static_cast<detail::Bits<V>>(detail::bits_of(cosine_or) ^ cosine_sign))};
@@ -165,7 +161,7 @@ template <class V>
 template <class V>
 [[nodiscard, gnu::always_inline]] inline V atan2(const V& y, const V& x) noexcept {
   constexpr double infinity = std::numeric_limits<double>::infinity();
-  const V up = detail::magnitude(y), along = detail::magnitude(x), zero{}, one = zero + 1.0;
+  const V up = magnitude(y), along = magnitude(x), zero{}, one = zero + 1.0;
   const auto steep = up > along;
   const V larger = steep ? up : along, smaller = steep ? along : up;
   const V scale = larger > 0x1p1000 ? zero + 0x1p-60 : one;  // keeps 2 m + n finite
@@ -231,7 +227,7 @@ template <class V>
 /// Nearest whole numbers, the even one of two; the sign of a zero is kept.
 template <class V>
 [[nodiscard, gnu::always_inline]] inline V round(const V& x) noexcept {
-  const V size = detail::magnitude(x);
+  const V size = magnitude(x);
   const V whole = (size + 0x1p52) - 0x1p52;
   return size < 0x1p52 ? detail::with_sign(whole, x) : x;
 }

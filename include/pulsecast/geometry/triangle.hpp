@@ -3,8 +3,6 @@
 #ifndef PULSECAST_GEOMETRY_TRIANGLE_HPP
 #define PULSECAST_GEOMETRY_TRIANGLE_HPP
 
-#include <bit>
-
 #include <pulsecast/geometry/box.hpp>
 #include <pulsecast/geometry/single_ray.hpp>
 
@@ -85,11 +83,6 @@ struct TrianglePacket {
 
 namespace detail {
 
-/// Lane-wise magnitude.
-[[nodiscard]] inline simd::Doubles magnitude(const simd::Doubles& v) noexcept {
-  return simd::Doubles(simd::Ids(v) & 0x7FFF'FFFF'FFFF'FFFF);
-}
-
 /// Planes through a ray's origin and an edge of each triangle, and the bound below which a side is
 /// in doubt: |e||s| in the 1-norm bounds each sum of products, which is at most seven roundings off.
 struct EdgePlanes {
@@ -99,6 +92,7 @@ struct EdgePlanes {
   [[gnu::always_inline]] EdgePlanes(const TrianglePacket::Corner& from, const TrianglePacket::Corner& to,
                                     double direction_length) noexcept {
     const simd::Doubles tolerance = simd::Doubles{} + 4 * std::numeric_limits<double>::epsilon() * direction_length;
+    using simd::magnitude;
     const simd::Doubles ex = to.x - from.x, ey = to.y - from.y, ez = to.z - from.z;
     const simd::Doubles sx = to.x + from.x, sy = to.y + from.y, sz = to.z + from.z;
     x = ey * sz - ez * sy;
@@ -161,7 +155,7 @@ template <class Rays, class Hits, class Solid = detail::SolidEverywhere>
   constexpr bool with_holes = !std::is_same_v<Solid, detail::SolidEverywhere>;
   constexpr double unit = std::numeric_limits<double>::epsilon();
   using Corner = TrianglePacket::Corner;
-  using detail::magnitude;
+  using simd::magnitude;
   const auto from_origin = [&](const Corner& p) noexcept -> Corner {
     return {p.x - rays.origin.x, p.y - rays.origin.y, p.z - rays.origin.z};
   };

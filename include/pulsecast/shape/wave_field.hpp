@@ -215,7 +215,7 @@ class WaveProfile {
         const simd::Doubles speed = east * direction.x + north * direction.y;
         const simd::Doubles rise = field.lanes(WaveField::amplitude, i) * speed;
         simd::store(speed, speeds_[i]);
-        slopes.add(part, simd::detail::magnitude(rise));
+        slopes.add(part, simd::magnitude(rise));
         curvatures.add(part, rise * speed);
       });
       steepest_[g + 1] = steep += pi * slopes.total();

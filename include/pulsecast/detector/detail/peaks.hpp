@@ -116,9 +116,7 @@ struct OnlyPeak {
   const Reflection* most = nullptr;
   for (auto r = from(peak.time - shape.end()), last = from(peak.time - shape.begin()); r < last;) {
     const auto size = std::min<std::size_t>(simd::lane_count, static_cast<std::size_t>(last - r));
-    const auto of = [&](double Reflection::*member) noexcept {
-      return simd::generate([&](std::size_t lane) noexcept { return r[std::min(lane, size - 1)].*member; });
-    };
+    const auto of = [&](double Reflection::*member) noexcept { return detail::lanes_of(r, size, member); };
     const simd::Doubles powers =
         of(&Reflection::power) * shape(simd::Doubles(peak.time - 2 * of(&Reflection::range) / speed_of_light));
     for (std::size_t lane = 0; lane < size; ++lane, ++r) {

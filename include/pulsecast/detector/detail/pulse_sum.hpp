@@ -21,6 +21,12 @@ namespace detail {
   return first_not(all.size(), [&](std::size_t i) { return arrival(all[i]) < time; });
 }
 
+/// A number of successive reflections, in lanes. Those beyond `count` repeat the first.
+[[nodiscard, gnu::always_inline]] inline simd::Doubles lanes_of(const Reflection* from, std::size_t count,
+                                                                double Reflection::*member) noexcept {
+  return simd::generate([&](std::size_t lane) noexcept { return from[lane < count ? lane : 0].*member; });
+}
+
 /// Sorts up to `RayBundle::capacity` reflections by range, those of equal ranges as they come. Each moves once, to its
 /// rank, which lanes count without branches.
 inline void sort_by_rank(std::span<Reflection> all) noexcept {
@@ -195,9 +201,7 @@ class SampledSum {
   void find_edges(Edges& edges) const noexcept {
     const std::size_t left = reflections_.size() - next_;
     const Reflection* const from = reflections_.data() + (left > 0 ? next_ : 0);
-    const auto of = [&](double Reflection::*member) noexcept {
-      return simd::generate([&](std::size_t lane) noexcept { return from[lane < left ? lane : 0].*member; });
-    };
+    const auto of = [&](double Reflection::*member) noexcept { return detail::lanes_of(from, left, member); };
     const simd::Doubles edge = 2 * of(&Reflection::range) / speed_of_light - PulseShape::peak * shape_.tau;
     const simd::Doubles whole = simd::floor(edge / interval_), at = whole * interval_, then = (whole + 1) * interval_;
     const auto later = at < edge;  // or at the sample `whole`, as rounded

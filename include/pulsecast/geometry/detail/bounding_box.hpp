@@ -4,7 +4,6 @@
 #define PULSECAST_GEOMETRY_DETAIL_BOUNDING_BOX_HPP
 
 #include <algorithm>
-#include <bit>
 #include <concepts>
 #include <iterator>
 

@@ -3,8 +3,6 @@
 #ifndef PULSECAST_SHAPE_DETAIL_VOXEL_INDEX_HPP
 #define PULSECAST_SHAPE_DETAIL_VOXEL_INDEX_HPP
 
-#include <bit>
-
 #include <pulsecast/base/shared_array.hpp>
 #include <pulsecast/geometry/box.hpp>
 #include <pulsecast/shape/detail/lattice_ray.hpp>
