@@ -73,11 +73,14 @@ template <class V>
 using Bits = std::conditional_t<std::is_same_v<V, double>, std::uint64_t, Vec<std::uint64_t, sizeof(V) / 8>>;
 }  // namespace detail
 
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wpsabi"  // of vectors wider than a register
 /// Magnitude of a number of double precision, or of each lane of a vector.
 template <class V>
 [[nodiscard, gnu::always_inline]] inline V magnitude(const V& v) noexcept {
   return std::bit_cast<V>(static_cast<detail::Bits<V>>(std::bit_cast<detail::Bits<V>>(v) & 0x7FFF'FFFF'FFFF'FFFF));
 }
+#pragma GCC diagnostic pop
 
 /// Numbers that a sum over a column adds up side by side, in one register or two: the same for
 /// every instruction set, so that sums are.
