@@ -32,7 +32,7 @@ template <class S>
 [[nodiscard]] detail::PulsesOf<S> find_pulses(const S& source, PulseIndex i, std::size_t count,
                                               [[maybe_unused]] PulseIndex step = 1) noexcept {
   static_assert(detail::members_checked<S, tag::MakesLanes, tag::StridesLanes, tag::FindsSlots, tag::SkipsBlocked,
-                                        tag::DrawsByLeg, tag::MeasuresBeam>);
+                                        tag::DrawsByLeg, tag::MeasuresBeam, tag::StatesErrors>);
   if constexpr (detail::MakesStridedLanes<S>)
     return source.pulse_lanes(i, count, step);
   else if constexpr (MakesLanes<S> && detail::LanesOfItsPulses<S>)

@@ -6,6 +6,7 @@
 #include <memory>
 #include <span>
 
+#include <pulsecast/error_source.hpp>
 #include <pulsecast/geometry/bundle.hpp>
 #include <pulsecast/geometry/ray_cone.hpp>
 #include <pulsecast/pulse.hpp>
@@ -134,6 +135,32 @@ concept MeasuresBeam = requires(const S s, PulseIndex i, Tick t) {
 PULSECAST_OPTIONAL_MEMBER(MeasuresBeam,
                           "std::optional<Pose<frame::Beam, frame::Instrument>> measured(PulseIndex, Tick) const noexcept",
                           measured, (PulseIndex{}, {}))
+
+namespace detail {
+template <class Frame>
+struct TakesErrors {
+  void operator()(const PoseError<Frame>&) const noexcept {}
+};
+template <class P>
+struct FrameOf;
+template <class Frame>
+struct FrameOf<std::optional<Pulse<Frame>>> { using type = Frame; };
+/// Visitor of the errors of a source.
+template <class S>
+using ErrorVisitorOf = TakesErrors<typename FrameOf<decltype(std::declval<const S&>().pulse(PulseIndex{}))>::type>;
+}  // namespace detail
+
+/// Source that states the errors of its reported pulses, as `WithPoseErrors`: `visit_errors(i, t, visit)` calls `visit` with
+/// a `PoseError` in its frame for each error of pulse i, fired at t. An instrument that `MeasuresBeam` and draws its errors
+/// states them so.
+/// Law: pure; to first order, the reported pose of a pulse is its true one, displaced by the sum of these errors, each times
+/// a draw from the standard normal distribution; a wrapper of a source passes them on.
+template <class S>
+concept StatesErrors = requires(const S s, PulseIndex i, Tick t, const detail::ErrorVisitorOf<S>& visit) {
+  { s.visit_errors(i, t, visit) } noexcept -> std::same_as<void>;
+};
+PULSECAST_OPTIONAL_MEMBER(StatesErrors, "void visit_errors(PulseIndex, Tick, const Visitor&) const noexcept", visit_errors,
+                          (PulseIndex{}, Tick{}, std::declval<const detail::ErrorVisitorOf<T>&>()))
 
 /// Leaf test of an accelerator that loads primitives into the cache ahead of their test.
 template <class T>

@@ -25,8 +25,9 @@ enum class Purpose : std::uint32_t {
   beam_turn = 9,  ///< rotation of a footprint about its axis
   speckle = 10,   ///< phases of coherent light
   leaf_tilt = 11,
-  scattering = 12,  ///< directions of light that is scattered on
-  drops = 13,       ///< rain and snow in the beam
+  scattering = 12,   ///< directions of light that is scattered on
+  drops = 13,        ///< rain and snow in the beam
+  calibration = 14,  ///< errors that are drawn once
 };
 
 /// Key of a random number: the same key gives the same number on any thread, in any order.

@@ -58,6 +58,12 @@ struct Tick {
     return normal(a.second + b.second, a.fraction + b.fraction);
   }
 
+  /// Time span from b to a; seconds may be negative.
+  [[nodiscard]] friend Tick operator-(const Tick& a, const Tick& b) noexcept {
+    const double rest = a.fraction - b.fraction;
+    return rest < 0 ? normal(a.second - b.second - 1, rest + 1) : normal(a.second - b.second, rest);
+  }
+
   friend auto operator<=>(const Tick&, const Tick&) = default;
 
  private:

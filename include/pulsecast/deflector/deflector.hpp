@@ -63,6 +63,12 @@ class Deflector {
     return moving_.at(t) * *inner;
   }
 
+  /// Errors of the source, as the concept StatesErrors requires.
+  template <class Visit>
+  void visit_errors(PulseIndex i, Tick t, const Visit& visit) const noexcept requires StatesErrors<Source> {
+    source_.visit_errors(i, t, [&, moved = moving_.at(t)](const auto& error) noexcept { visit(moved * error); });
+  }
+
   [[nodiscard]] const Moving& moving() const noexcept { return moving_; }  ///< optic or head
   [[nodiscard]] const Source& source() const noexcept { return source_; }  ///< deflected source
 

@@ -72,6 +72,13 @@ class Legs {
     return starts_[k].pulse + legs_[k].next_pulse(i - starts_[k].pulse);
   }
 
+  /// Errors of the leg of a slot, as the concept StatesErrors requires.
+  template <class Visit>
+  void visit_errors(PulseIndex i, Tick t, const Visit& visit) const noexcept requires StatesErrors<P> {
+    const std::size_t k = leg_of(i);
+    legs_[k].visit_errors(i - starts_[k].pulse, t - starts_[k].tick, visit);
+  }
+
   [[nodiscard]] const std::vector<P>& legs() const noexcept { return legs_; }  ///< platforms in order
 
   /// Begin of leg k since the survey's start.

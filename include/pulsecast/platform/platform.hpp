@@ -56,6 +56,14 @@ class Platform {
     return source_.next_pulse(i);
   }
 
+  /// Errors of the instrument, as the concept StatesErrors requires.
+  template <class Visit>
+  void visit_errors(PulseIndex i, Tick t, const Visit& visit) const noexcept requires StatesErrors<Source> {
+    source_.visit_errors(i, t, [&, placed = instrument_at(t)](const PoseError<frame::Instrument>& error) noexcept {
+      visit(placed * error);
+    });
+  }
+
   /// Pulses of the instrument, transformed into the world.
   [[nodiscard]] PulseLanes<frame::World> placed(const PulseLanes<frame::Instrument>& inner) const noexcept {
     PoseLanes<frame::Body, frame::World> world_from_body;

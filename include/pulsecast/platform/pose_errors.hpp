@@ -7,45 +7,81 @@
 
 namespace PULSECAST_NAMESPACE {
 
-/// Errors of reported poses, zero by default: deviations along or about each axis of the body.
+/// Standard deviations along or about the x, y and z of a frame, or one number for all.
+struct AxisDeviations {
+  double x;  ///< along or about x [m or rad]
+  double y;  ///< along or about y [m or rad]
+  double z;  ///< along or about z [m or rad]
+
+  /// The same for all axes.
+  constexpr AxisDeviations(double each) noexcept : x(each), y(each), z(each) {}
+  /// One for each axis.
+  constexpr AxisDeviations(double x_, double y_, double z_) noexcept : x(x_), y(y_), z(z_) {}
+
+  [[nodiscard]] constexpr bool none() const noexcept { return x == 0 && y == 0 && z == 0; }  ///< no error
+  friend bool operator==(const AxisDeviations&, const AxisDeviations&) = default;
+};
+
+/// Errors of reported poses, zero by default: standard deviations along or about each axis of the body.
+/// `uncertainty_of` a survey states them; a lever arm or boresight error of a given size counts there as one standard
+/// deviation.
 struct PoseErrors {
-  double position_noise = 0;               ///< white noise of the position [m]
-  double attitude_noise = 0;               ///< white noise of the attitude [rad]
-  double position_drift = 0;               ///< slow drift of the position: a Gauss-Markov process [m]
-  double attitude_drift = 0;               ///< slow drift of the attitude, of the same kind [rad]
-  double drift_time = 60;                  ///< decay of drifts to 1/e; at least 1e-6 of the survey [s]
-  double angular_jitter = 0;               ///< unreported deviation of each beam, right and up [rad]
-  Vec3 lever_arm_error{};                  ///< reported minus true lever arm [m]
+  AxisDeviations position_noise = 0;  ///< white noise of the position [m]
+  AxisDeviations attitude_noise = 0;  ///< white noise of the attitude [rad]
+  AxisDeviations position_drift = 0;  ///< slow drift of the position: a Gauss-Markov process [m]
+  AxisDeviations attitude_drift = 0;  ///< slow drift of the attitude, of the same kind [rad]
+  double drift_time = 60;             ///< decay of drifts to 1/e; at least 1e-6 of the survey [s]
+  AxisDeviations angular_jitter = 0;  ///< unreported turn of each beam about its x and z; y is without effect [rad]
+  Vec3 lever_arm_error{};             ///< reported minus true lever arm [m]
   Rotation boresight_error = no_rotation;  ///< from the true instrument to the reported one
   std::uint64_t seed = 0;                  ///< of all draws; each of several `Legs` draws its own
+  AxisDeviations position_offset = 0;      ///< of the position, constant over a leg, as of a registration [m]
+  AxisDeviations attitude_offset = 0;      ///< of the attitude, constant over a leg [rad]
+  AxisDeviations lever_arm_deviation = 0;  ///< of the lever arm, drawn once for all legs [m]
+  AxisDeviations boresight_deviation =
+      0;                         ///< of the boresight about the instrument's axes, drawn once for all legs [rad]
+  double latency_deviation = 0;  ///< of the clock of poses, drawn once for all legs [s]
 
   void validate() const {
-    require_not_negative("PoseErrors::position_noise", position_noise, "m");
-    require_within("PoseErrors::attitude_noise", attitude_noise, 0, max_angle, "rad");
-    require_not_negative("PoseErrors::position_drift", position_drift, "m");
-    require_within("PoseErrors::attitude_drift", attitude_drift, 0, max_angle, "rad");
+    require("position_noise", position_noise, 1e6, "m");
+    require("attitude_noise", attitude_noise, max_angle, "rad");
+    require("position_drift", position_drift, 1e6, "m");
+    require("attitude_drift", attitude_drift, max_angle, "rad");
     require_positive("PoseErrors::drift_time", drift_time, "s");
-    require_within("PoseErrors::angular_jitter", angular_jitter, 0, max_angle, "rad");
+    require("angular_jitter", angular_jitter, max_angle, "rad");
     require_finite("PoseErrors::lever_arm_error (length)", length(lever_arm_error), "m");
     require_rotation("PoseErrors::boresight_error", boresight_error);
+    require("position_offset", position_offset, 1e6, "m");
+    require("attitude_offset", attitude_offset, max_angle, "rad");
+    require("lever_arm_deviation", lever_arm_deviation, 1e6, "m");
+    require("boresight_deviation", boresight_deviation, max_angle, "rad");
+    require_not_negative("PoseErrors::latency_deviation", latency_deviation, "s");
   }
   void normalize() noexcept { boresight_error = unit(boresight_error); }
+
+ private:
+  static void require(const char* member, const AxisDeviations& deviations, double most, const char* unit) {
+    for (const double each : {deviations.x, deviations.y, deviations.z})
+      require_within(std::string("PoseErrors::") + member, each, 0, most, unit);
+  }
 };
 
 /// Platform with pose errors: rays start at the true pose, points are of the reported one.
 template <Trajectory Path, InstrumentSource Source>
 class WithPoseErrors {
  public:
-  using refinements = refines<tag::MakesLanes, tag::DrawsByLeg>;
+  using refinements = refines<tag::MakesLanes, tag::DrawsByLeg, tag::StatesErrors>;
   /// @throws SettingError for settings out of range
   WithPoseErrors(Platform<Path, Source> truth, PoseErrors errors)
       : truth_(std::move(truth)), errors_(validated(errors)) {
-    plan_drift();
+    calibration_ = {errors_.boresight_error * turned_by(drawn_once(errors_.boresight_deviation, 0)),
+                    errors_.lever_arm_error + drawn_once(errors_.lever_arm_deviation, 1)};
+    latency_ = drawn_once(errors_.latency_deviation, 2).x;
+    draw();
   }
 
   void draw_for_leg(std::uint32_t leg) {
-    if (leg == std::exchange(leg_, leg)) return;
-    plan_drift();
+    if (leg != std::exchange(leg_, leg)) draw();
   }
 
   [[nodiscard]] PulseIndex size() const noexcept { return truth_.size(); }
@@ -59,7 +95,7 @@ class WithPoseErrors {
 
   /// Reported pose of the body.
   [[nodiscard]] Pose<frame::Body, frame::World> reported(Tick t) const noexcept {
-    const Pose<frame::Body, frame::World> world_from_body = truth_.trajectory().at(t);
+    const Pose<frame::Body, frame::World> world_from_body = truth_.trajectory().at(later(t, latency_));
     const Drift drift = drift_at(t);
     const Vec3 moved = white_noise(t, Purpose::position_noise, errors_.position_noise) + drift.position;
     const Vec3 turned = white_noise(t, Purpose::attitude_noise, errors_.attitude_noise) + drift.attitude;
@@ -71,8 +107,8 @@ class WithPoseErrors {
   [[nodiscard]] PulseLanes<frame::World> pulse_lanes(PulseIndex i, std::size_t count) const noexcept {
     const auto inner = find_pulses(truth_.source(), i, count);
     auto out = truth_.placed(jittered(inner, i));
-    const Pose<frame::Instrument, frame::Body> calibrated{truth_.mount().boresight * errors_.boresight_error,
-                                                          truth_.mount().lever_arm + errors_.lever_arm_error};
+    const Pose<frame::Instrument, frame::Body> calibrated{truth_.mount().boresight * calibration_.rotation,
+                                                          truth_.mount().lever_arm + calibration_.position};
     for (std::size_t lane = 0; lane < inner.size; ++lane) {
       if (inner.sent[lane] == 0) continue;
       const Tick t = inner.tick[lane];
@@ -83,6 +119,30 @@ class WithPoseErrors {
     return out;
   }
 
+  /// As the concept StatesErrors requires.
+  template <class Visit>
+  void visit_errors(PulseIndex i, Tick t, const Visit& visit) const noexcept {
+    if constexpr (StatesErrors<Source>) truth_.visit_errors(i, t, visit);
+    const Pose<frame::Body, frame::World> body = truth_.trajectory().at(t);
+    const Pose<frame::Instrument, frame::World> instrument = body * truth_.mount().pose();
+    visit_axes(body, errors_.position_noise, errors_.attitude_noise, ErrorScope::pulse, visit);
+    visit_axes(body, errors_.position_drift, errors_.attitude_drift, ErrorScope::correlated, visit);
+    visit_axes(body, errors_.position_offset, errors_.attitude_offset, ErrorScope::leg, visit);
+    visit_axes(body, errors_.lever_arm_deviation, 0, ErrorScope::survey, visit);
+    visit_axes(instrument, 0, errors_.boresight_deviation, ErrorScope::survey, visit);
+    if (errors_.lever_arm_error != Vec3{})
+      visit(PoseError<frame::World>{body.direction(errors_.lever_arm_error), {}, {}, ErrorScope::survey});
+    if (errors_.boresight_error != no_rotation)
+      visit(instrument *
+            PoseError<frame::Instrument>{{}, turn_of(errors_.boresight_error), Vec3{}, ErrorScope::survey});
+    if (errors_.latency_deviation > 0) {
+      const auto after = truth_.trajectory().at(later(t, errors_.latency_deviation));
+      visit(PoseError<frame::World>{after.position - body.position, turn_of(after.rotation * conjugate(body.rotation)),
+                                    body.position, ErrorScope::survey});
+    }
+    visit_jitter(i, visit);
+  }
+
  private:
   struct Drift {
     Vec3 position{}, attitude{};
@@ -91,6 +151,44 @@ class WithPoseErrors {
   static Rotation turned_by(const Vec3& angles) noexcept {
     const double angle = length(angles);
     return angle > 0 ? rotation_about(angles, angle) : no_rotation;
+  }
+  /// Axis times angle of a rotation [rad].
+  static Vec3 turn_of(const Rotation& r) noexcept {
+    const Vec3 axis{r.x, r.y, r.z};
+    const double size = length(axis);
+    return size > 0 ? 2 * std::atan2(size, r.w) / size * axis : Vec3{};
+  }
+  static Tick later(Tick t, double seconds) noexcept { return seconds == 0 ? t : t + Tick::of_seconds(seconds); }
+
+  /// Errors along the axes of a frame, and about those through its origin.
+  template <class Frame>
+  static void visit_axes(const Pose<Frame, frame::World>& pose, const AxisDeviations& moved,
+                         const AxisDeviations& turned, ErrorScope scope, const auto& visit) noexcept {
+    const auto each = [](const AxisDeviations& of, const auto& use) noexcept {
+      if (of.x > 0) use(Vec3{of.x, 0, 0});
+      if (of.y > 0) use(Vec3{0, of.y, 0});
+      if (of.z > 0) use(Vec3{0, 0, of.z});
+    };
+    each(moved, [&](const Vec3& error) noexcept { visit(pose * PoseError<Frame>{error, {}, {}, scope}); });
+    each(turned, [&](const Vec3& error) noexcept { visit(pose * PoseError<Frame>{{}, error, Vec3{}, scope}); });
+  }
+
+  void visit_jitter(PulseIndex i, const auto& visit) const noexcept {
+    const auto [about_x, unused, about_z] = errors_.angular_jitter;
+    if (about_x == 0 && about_z == 0) return;
+    const auto turn = [&](const Vec3& error) noexcept {
+      visit(PoseError<frame::World>{{}, error, {}, ErrorScope::pulse});
+    };
+    if (about_x == about_z) {  // alike about any axis, and that of the beam is without effect
+      for (int k = 0; k < 3; ++k) {
+        Vec3 error{};
+        error[k] = about_x;
+        turn(error);
+      }
+    } else if (const auto p = truth_.pulse(i)) {
+      turn(p->pose.direction({about_x, 0, 0}));
+      turn(p->pose.direction({0, 0, about_z}));
+    }
   }
 
   double drawn(std::uint64_t moment, std::uint32_t number, Purpose purpose) const noexcept {
@@ -103,47 +201,62 @@ class WithPoseErrors {
   }
 
   /// White noise, common to emitters that fire together. No two ticks within 45 years share it.
-  Vec3 white_noise(Tick t, Purpose purpose, double deviation) const noexcept {
-    if (deviation == 0) return {};
+  Vec3 white_noise(Tick t, Purpose purpose, const AxisDeviations& deviations) const noexcept {
+    if (deviations.none()) return {};
     const auto part = std::bit_cast<std::uint64_t>(t.fraction);
-    return deviation * normals(part, purpose, static_cast<std::uint32_t>(t.second));
+    return by_axis(deviations, normals(part, purpose, static_cast<std::uint32_t>(t.second)));
+  }
+
+  static Vec3 by_axis(const AxisDeviations& of, const Vec3& draws) noexcept {
+    return {of.x * draws.x, of.y * draws.y, of.z * draws.z};
+  }
+
+  /// Error that all legs share.
+  Vec3 drawn_once(const AxisDeviations& of, std::uint32_t number) const noexcept {
+    const auto draw = [&](std::uint32_t k) { return normal({errors_.seed, 2 + k, number, Purpose::calibration}); };
+    return by_axis(of, {draw(0), draw(1), draw(2)});
   }
 
   PulseLanes<frame::Instrument> jittered(PulseLanes<frame::Instrument> p, PulseIndex i) const noexcept {
-    if (errors_.angular_jitter == 0) return p;
+    if (errors_.angular_jitter.none()) return p;
     for (std::size_t lane = 0; lane < p.size; ++lane) {
-      const double aside = errors_.angular_jitter * drawn(i + lane, 0, Purpose::angular_jitter);
-      const double upwards = errors_.angular_jitter * drawn(i + lane, 1, Purpose::angular_jitter);
+      const double aside = errors_.angular_jitter.z * drawn(i + lane, 0, Purpose::angular_jitter);
+      const double upwards = errors_.angular_jitter.x * drawn(i + lane, 1, Purpose::angular_jitter);
       const Rotation turned = p.pose.rotation[lane] * rotation_about(axis::up, -aside);
       p.pose.rotation.set(lane, turned * rotation_about(axis::right, upwards));
     }
     return p;
   }
 
-  /// Drift at nodes: the last, decayed, plus a random part. Source: Gelb 1974, sec. 3.8.
-  void plan_drift() {
-    if (errors_.position_drift == 0 && errors_.attitude_drift == 0) return;
+  /// Draws what is constant over a leg, and the drift at nodes: the last, decayed, plus a random part.
+  /// Source: Gelb 1974, sec. 3.8.
+  void draw() {
+    offset_ = {by_axis(errors_.position_offset, normals(0, Purpose::calibration)),
+               by_axis(errors_.attitude_offset, normals(1, Purpose::calibration))};
+    if (errors_.position_drift.none() && errors_.attitude_drift.none()) return;
     const double kept = std::exp(-1.0 / nodes_per_drift_time), added = std::sqrt(1 - kept * kept);
     const double nodes = std::ceil(truth_.duration().seconds() / errors_.drift_time * nodes_per_drift_time) + 2;
     const double times = nodes / nodes_per_drift_time;
     require_within("PoseErrors::drift_time (survey duration divided by it)", times, 0, 1e6, "");
     drift_.clear();
     for (std::uint64_t n = 0; n < static_cast<std::uint64_t>(nodes); ++n) {
-      const Vec3 position = errors_.position_drift * normals(n, Purpose::position_drift);
-      const Vec3 attitude = errors_.attitude_drift * normals(n, Purpose::attitude_drift);
+      const Vec3 position = by_axis(errors_.position_drift, normals(n, Purpose::position_drift));
+      const Vec3 attitude = by_axis(errors_.attitude_drift, normals(n, Purpose::attitude_drift));
       const Drift before = n == 0 ? Drift{position, attitude} : drift_.back();
       const double fresh = n == 0 ? 0 : added, old = n == 0 ? 1 : kept;
       drift_.push_back({old * before.position + fresh * position, old * before.attitude + fresh * attitude});
     }
   }
 
+  /// Drift, and what is constant over the leg.
   Drift drift_at(Tick t) const noexcept {
-    if (drift_.empty()) return {};
+    if (drift_.empty()) return offset_;
     const double at = t.seconds() / errors_.drift_time * nodes_per_drift_time;
     const std::size_t n = at > 0 ? std::min(static_cast<std::size_t>(at), drift_.size() - 2) : 0;
     const double share = at - static_cast<double>(n);
     const Drift &a = drift_[n], &b = drift_[n + 1];
-    return {a.position + share * (b.position - a.position), a.attitude + share * (b.attitude - a.attitude)};
+    return {a.position + share * (b.position - a.position) + offset_.position,
+            a.attitude + share * (b.attitude - a.attitude) + offset_.attitude};
   }
 
   static constexpr double nodes_per_drift_time = 50;  ///< between nodes, 1 % is off the variance
@@ -151,6 +264,9 @@ class WithPoseErrors {
   Platform<Path, Source> truth_;
   PoseErrors errors_;
   std::uint32_t leg_ = 0;
+  Pose<frame::Instrument, frame::Instrument> calibration_{};  // reported from true mount
+  double latency_ = 0;                                        // of the clock of poses [s]
+  Drift offset_{};                                            // constant over the leg
   std::vector<Drift> drift_;
 };
 

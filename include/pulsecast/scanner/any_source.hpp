@@ -53,6 +53,14 @@ class AnySource {
     };
     return std::visit(beam, source_);
   }
+  template <class Visit>
+  void visit_errors(PulseIndex i, Tick t, const Visit& visit) const noexcept requires StatesErrors<First> ||
+      (StatesErrors<Others> || ...) {
+    const auto state = [&]<class Source>(const Source& s) noexcept {
+      if constexpr (StatesErrors<Source>) s.visit_errors(i, t, visit);
+    };
+    std::visit(state, source_);
+  }
   void draw_for_leg(std::uint32_t leg) requires DrawsByLeg<First> ||(DrawsByLeg<Others> || ...) {
     const auto tell = [leg]<class Source>(Source& s) {
       if constexpr (DrawsByLeg<Source>) s.draw_for_leg(leg);

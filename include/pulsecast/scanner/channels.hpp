@@ -79,6 +79,12 @@ class Channels {
     return channels_[i % channels_.size()].measured(i / channels_.size(), t);
   }
 
+  /// Errors of the channel of a slot, as the concept StatesErrors requires.
+  template <class Visit>
+  void visit_errors(PulseIndex i, Tick t, const Visit& visit) const noexcept requires StatesErrors<Source> {
+    channels_[i % channels_.size()].visit_errors(i / channels_.size(), t, visit);
+  }
+
   [[nodiscard]] const std::vector<Source>& channels() const noexcept { return channels_; }  ///< in firing order
 
  private:

@@ -1,0 +1,83 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#ifndef PULSECAST_ERROR_SOURCE_HPP
+#define PULSECAST_ERROR_SOURCE_HPP
+
+#include <cstdint>
+#include <optional>
+
+#include <pulsecast/base/frame.hpp>
+
+/// Errors that a source draws, in the form in which they are stated: one standard deviation of each.
+namespace PULSECAST_NAMESPACE {
+
+/// How long a drawn error stays the same.
+enum class ErrorScope : std::uint8_t {
+  pulse,       ///< drawn anew for each pulse: random
+  correlated,  ///< of neighbouring pulses alike, as a drift
+  leg,         ///< drawn once for a leg
+  survey,      ///< drawn once for a survey; also an error of a known size
+};
+
+/// Displacement of reported points by one standard deviation of an error that is independent of others. In a frame:
+/// moved, and turned about a point, as a rigid body.
+template <class Frame>
+struct PoseError {
+  Vec3 moved{};                          ///< translation [m]
+  Vec3 turned{};                         ///< small rotation: axis times angle [rad]
+  std::optional<Vec3> about{};           ///< point that the rotation leaves in place [m]; empty: the exit of the beam
+  ErrorScope scope = ErrorScope::pulse;  ///< how long it stays the same
+};
+
+/// Error in the frame around its own.
+template <class Inner, class Outer>
+[[nodiscard]] PoseError<Outer> operator*(const Pose<Inner, Outer>& pose, const PoseError<Inner>& error) noexcept {
+  PoseError<Outer> out{pose.direction(error.moved), pose.direction(error.turned), {}, error.scope};
+  if (error.about) out.about = pose.point(*error.about);
+  return out;
+}
+
+/// Covariance of a vector: a symmetric matrix [m^2].
+struct Covariance {
+  double xx = 0, yy = 0, zz = 0;  ///< variances
+  double xy = 0, xz = 0, yz = 0;  ///< covariances
+
+  /// Adds that of an error along a vector, whose length is a standard deviation [m].
+  void add(const Vec3& v) noexcept {
+    xx += v.x * v.x;
+    yy += v.y * v.y;
+    zz += v.z * v.z;
+    xy += v.x * v.y;
+    xz += v.x * v.z;
+    yz += v.y * v.z;
+  }
+  /// Adds the same variance in all directions [m^2].
+  void add(double variance) noexcept {
+    xx += variance;
+    yy += variance;
+    zz += variance;
+  }
+  /// Adds that of independent errors.
+  void add(const Covariance& other) noexcept {
+    xx += other.xx;
+    yy += other.yy;
+    zz += other.zz;
+    xy += other.xy;
+    xz += other.xz;
+    yz += other.yz;
+  }
+  /// Variance along a unit vector [m^2].
+  [[nodiscard]] double along(const Vec3& v) const noexcept {
+    return xx * v.x * v.x + yy * v.y * v.y + zz * v.z * v.z + 2 * (xy * v.x * v.y + xz * v.x * v.z + yz * v.y * v.z);
+  }
+  /// The same in axes that `turn(v)` maps a vector to.
+  [[nodiscard]] Covariance in_axes(const auto& turn) const noexcept {
+    const Vec3 x = turn(Vec3{xx, xy, xz}), y = turn(Vec3{xy, yy, yz}), z = turn(Vec3{xz, yz, zz});  // columns, turned
+    const Vec3 a = turn(Vec3{x.x, y.x, z.x}), b = turn(Vec3{x.y, y.y, z.y}), c = turn(Vec3{x.z, y.z, z.z});
+    return {a.x, b.y, c.z, a.y, a.z, b.z};
+  }
+};
+
+}  // namespace PULSECAST_NAMESPACE
+
+#endif
