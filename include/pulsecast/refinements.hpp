@@ -6,7 +6,7 @@
 #include <memory>
 #include <span>
 
-#include <pulsecast/error_source.hpp>
+#include <pulsecast/base/error_source.hpp>
 #include <pulsecast/geometry/bundle.hpp>
 #include <pulsecast/geometry/ray_cone.hpp>
 #include <pulsecast/pulse.hpp>

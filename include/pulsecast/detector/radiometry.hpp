@@ -4,6 +4,7 @@
 #define PULSECAST_DETECTOR_RADIOMETRY_HPP
 
 #include <pulsecast/base/extinction.hpp>
+#include <pulsecast/base/random.hpp>
 #include <pulsecast/base/search.hpp>
 #include <pulsecast/base/shared_array.hpp>
 #include <pulsecast/echo.hpp>
@@ -29,6 +30,8 @@ struct RangeErrors {
   /// Table that replaces both deviations if not empty, by ascending range: linear, constant beyond.
   SharedArray<DeviationAtRange> deviations{};
   SharedArray<double> channel_biases{};  ///< further bias by channel of `Emitter`; 0 beyond [m]
+  double bias_deviation = 0;             ///< of a further bias, drawn once for a survey [m]
+  double scale_deviation = 0;            ///< of a further scale, drawn once for a survey, from 0 to 0.5
 
   void validate() const {
     require_finite("RangeErrors::bias", bias, "m");
@@ -37,6 +40,8 @@ struct RangeErrors {
     require_not_negative("RangeErrors::deviation_per_metre", deviation_per_metre, "");
     require_not_negative("RangeErrors::deviation_at_watt", deviation_at_watt, "m");
     require_within("RangeErrors::power_exponent", power_exponent, -4, 0, "");
+    require_not_negative("RangeErrors::bias_deviation", bias_deviation, "m");
+    require_within("RangeErrors::scale_deviation", scale_deviation, 0, 0.5, "");
     for (const double offset : channel_biases) require_finite("RangeErrors::channel_biases", offset, "m");
     for (std::size_t i = 0; i < deviations.size(); ++i) {
       require_finite("RangeErrors::deviations (range)", deviations[i].range, "m");
@@ -49,7 +54,7 @@ struct RangeErrors {
   /// True without errors.
   [[nodiscard]] bool none() const noexcept {
     return bias == 0 && scale == 0 && deviation == 0 && deviation_per_metre == 0 && deviation_at_watt == 0 &&
-           deviations.size() == 0 && channel_biases.size() == 0;
+           deviations.size() == 0 && channel_biases.size() == 0 && bias_deviation == 0 && scale_deviation == 0;
   }
 
   /// Standard deviation of the noise at a range, at normal incidence [m].
@@ -58,14 +63,37 @@ struct RangeErrors {
     return detail::interpolated(deviations, range, &DeviationAtRange::range, &DeviationAtRange::deviation);
   }
 
-  /// Reported minus true range [m] of an echo of a channel, for a standard normal draw.
-  [[nodiscard]] double at(const Echo& echo, double draw, std::size_t channel = 0) const noexcept {
+  /// Standard deviation of the noise of an echo [m].
+  [[nodiscard]] double noise_of(const Echo& echo) const noexcept {
     constexpr double least = 0.01;  // bounds the noise of an edge-on surface
     const double slant = !grows_with_incidence ? 1 : echo.cos_incidence > least ? echo.cos_incidence : least;
     const double by_power = deviation_at_watt > 0 ? deviation_at_watt * std::pow(echo.amplitude, power_exponent) : 0;
+    return (deviation_at(echo.range) + by_power) / slant;
+  }
+
+  /// Reported minus true range without noise [m] of an echo of a channel.
+  [[nodiscard]] double bias_of(const Echo& echo, std::size_t channel = 0) const noexcept {
     const double of_channel = channel < channel_biases.size() ? channel_biases[channel] : 0;
-    const double noise = draw * (deviation_at(echo.range) + by_power) / slant;
-    return bias + of_channel + scale * echo.range + noise;
+    return bias + of_channel + scale * echo.range;
+  }
+
+  /// Reported minus true range [m] of an echo of a channel, for a standard normal draw.
+  [[nodiscard]] double at(const Echo& echo, double draw, std::size_t channel = 0) const noexcept {
+    return bias_of(echo, channel) + draw * noise_of(echo);
+  }
+
+  /// The same errors, with the bias and scale that a survey of this seed draws added to theirs.
+  [[nodiscard]] RangeErrors drawn(std::uint64_t seed, std::uint32_t receiver) const noexcept {
+    RangeErrors errors = *this;
+    errors.bias += bias_deviation * normal({seed, 0, receiver, Purpose::calibration});
+    errors.scale += scale_deviation * normal({seed, 1, receiver, Purpose::calibration});
+    return errors;
+  }
+
+  /// Mean square of what is alike for all echoes of a survey: drawn once, or of a given size [m^2].
+  [[nodiscard]] double systematic_variance(const Echo& echo, std::size_t channel = 0) const noexcept {
+    const double known = bias_of(echo, channel), scaled = scale_deviation * echo.range;
+    return known * known + bias_deviation * bias_deviation + scaled * scaled;
   }
 };
 

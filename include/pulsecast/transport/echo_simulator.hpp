@@ -128,6 +128,7 @@ class EchoSimulator {
     LinkBudget budget;      // link budget of its laser and receiver
     SubrayDirections beam;  // subrays, shared with emitters of equal beams
     bool errs = false;      // true if its receiver has range errors
+    RangeErrors errors{};   // drawn for this survey
   };
 
   /// Refuses a footprint whose shares do not sum to the whole beam.
@@ -172,7 +173,7 @@ class EchoSimulator {
       ++alike;
     *constants = {emitter, LinkBudget(unit.receiver, emitter.laser),
                   alike == constants ? SubrayDirections(unit.footprint, emitter) : alike->beam,
-                  !unit.receiver.range_errors.none()};
+                  !unit.receiver.range_errors.none(), unit.receiver.range_errors.drawn(seed_, emitter.receiver)};
   }
 
   static constexpr bool recorded = RecordsSubrays<Footprint>;
@@ -188,7 +189,7 @@ class EchoSimulator {
   [[nodiscard]] TransportInput light_of(const Pulse<frame::World>& pulse, PulseIndex i,
                                         const EmitterConstants& constants, Workspace& w) const noexcept {
     const Unit& unit = receivers_[constants.emitter.receiver];
-    const auto& [emitter, budget, beam, errs] = constants;
+    const auto& [emitter, budget, beam, errs, errors] = constants;
     TransportInput light{pulse, i, seed_, emitter, beam, unit.footprint.size(), budget, w.white_target};
     light.gate = unit.receiver.gate();
     if constexpr (recorded) light.record = w.subrays;
@@ -213,7 +214,7 @@ class EchoSimulator {
   /// Traces the rays of a sheaf, of pulses of one emitter.
   void trace_together(const EmitterConstants& constants, std::span<detail::BlockPulse*> pulses,
                       Workspace& w) const noexcept {
-    const auto& [emitter, budget, beam, errs] = constants;
+    const auto& [emitter, budget, beam, errs, errors] = constants;
     const RangeGate gate = receivers_[emitter.receiver].receiver.gate();
     const std::span<Hit> hits = w.transport.hits;
     w.rays.enclose();
@@ -243,12 +244,11 @@ class EchoSimulator {
     const Unit& unit = receivers_[emitter.receiver];
     const DetectorInput input{emitter, unit.receiver.gate(), reflections, {.seed = seed_, .pulse = i}, continuous};
     const Detection detection = unit.detector.detect(input, w.detectors[emitter.receiver]);
-    const RangeErrors& errors = unit.receiver.range_errors;
     bool all_inside = true;
     for (Echo& echo : detection.echoes) {
       echo.reflectance = echo.amplitude / white.power(constants.budget, echo.range);
       if (constants.errs) [[unlikely]]
-        echo.range += errors.at(echo, normal({seed_, i, echo.number, Purpose::range_noise}), emitter.channel);
+        echo.range += constants.errors.at(echo, normal({seed_, i, echo.number, Purpose::range_noise}), emitter.channel);
       all_inside &= input.gate.contains(echo.range);
     }
     const std::span<Echo> echoes = all_inside ? detection.echoes : detail::inside(input.gate, detection.echoes);

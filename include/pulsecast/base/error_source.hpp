@@ -1,9 +1,8 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
-#ifndef PULSECAST_ERROR_SOURCE_HPP
-#define PULSECAST_ERROR_SOURCE_HPP
+#ifndef PULSECAST_BASE_ERROR_SOURCE_HPP
+#define PULSECAST_BASE_ERROR_SOURCE_HPP
 
-#include <cstdint>
 #include <optional>
 
 #include <pulsecast/base/frame.hpp>
