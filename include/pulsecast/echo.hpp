@@ -94,21 +94,29 @@ struct RangeGate {
   [[nodiscard]] bool contains(double range) const noexcept { return range >= near && range <= far; }
 };
 
+/// What the subrays of a pulse met, as of a `JudgedFootprint`.
+enum class MetSurface : std::uint8_t {
+  unjudged,  ///< not judged, or a single ray
+  smooth,    ///< all met one plane, to a fiftieth of the footprint's deviation, which is evenly bright
+  mixed      ///< anything else
+};
+
 /// Pulse as reported by the instrument.
 struct Shot {
-  PulseIndex index = 0;            ///< number of the slot
-  Tick tick{};                     ///< emission time, since the survey's start
-  Vec3 origin{};                   ///< exit of the beam, in the world [m]
-  Vec3 direction{};                ///< unit vector, in the world
-  ScanAngle scan_angle{};          ///< as in `Pulse` [rad]
-  std::uint16_t leg = 0;           ///< number of the leg, from 0
-  std::uint16_t channel = 0;       ///< number of the emitter in its device, from 0
-  Fate fate = Fate::missed;        ///< fate of the slot
-  std::uint32_t first_echo = 0;    ///< index of its first echo in the batch
-  std::uint32_t echoes = 0;        ///< number of its echoes
-  std::uint64_t first_sample = 0;  ///< index of its first waveform sample in the batch
-  std::uint32_t samples = 0;       ///< number of its samples; 0 if waveforms are not kept
-  double waveform_start = 0;       ///< two-way travel time of the first sample [s]
+  PulseIndex index = 0;                       ///< number of the slot
+  Tick tick{};                                ///< emission time, since the survey's start
+  Vec3 origin{};                              ///< exit of the beam, in the world [m]
+  Vec3 direction{};                           ///< unit vector, in the world
+  ScanAngle scan_angle{};                     ///< as in `Pulse` [rad]
+  std::uint16_t leg = 0;                      ///< number of the leg, from 0
+  std::uint16_t channel = 0;                  ///< number of the emitter in its device, from 0
+  Fate fate = Fate::missed;                   ///< fate of the slot
+  MetSurface surface = MetSurface::unjudged;  ///< what its subrays met
+  std::uint32_t first_echo = 0;               ///< index of its first echo in the batch
+  std::uint32_t echoes = 0;                   ///< number of its echoes
+  std::uint64_t first_sample = 0;             ///< index of its first waveform sample in the batch
+  std::uint32_t samples = 0;                  ///< number of its samples; 0 if waveforms are not kept
+  double waveform_start = 0;                  ///< two-way travel time of the first sample [s]
 };
 
 /// Return of one subray of a pulse, for studies of footprints. Infinite range for a miss.

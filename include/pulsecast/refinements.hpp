@@ -225,6 +225,14 @@ PULSECAST_OPTIONAL_CONSTANT(RecordsSubrays, recorded)
 /// `TurnedFootprint`. The beams are round.
 PULSECAST_OPTIONAL_CONSTANT(RotatesPerPulse, rotates_per_pulse)
 
+/// Footprint whose surveys judge whether all subrays of a pulse met one smooth surface, as those of `JudgedFootprint`, by
+/// `Shot::surface`.
+template <class F>
+concept JudgesSurfaces = requires(const F footprint) {
+  { footprint.judges_surfaces() } noexcept -> std::same_as<bool>;
+};
+PULSECAST_OPTIONAL_MEMBER(JudgesSurfaces, "bool judges_surfaces() const noexcept", judges_surfaces, ())
+
 /// Detector that samples waveforms, every so many seconds [s].
 template <class D>
 concept SamplesWaveforms = requires(const D detector) {

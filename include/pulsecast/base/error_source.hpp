@@ -41,14 +41,15 @@ struct Covariance {
   double xx = 0, yy = 0, zz = 0;  ///< variances
   double xy = 0, xz = 0, yz = 0;  ///< covariances
 
-  /// Adds that of an error along a vector, whose length is a standard deviation [m].
-  void add(const Vec3& v) noexcept {
-    xx += v.x * v.x;
-    yy += v.y * v.y;
-    zz += v.z * v.z;
-    xy += v.x * v.y;
-    xz += v.x * v.z;
-    yz += v.y * v.z;
+  /// Adds that of an error along a vector, whose length is a standard deviation [m], or its multiple.
+  void add(const Vec3& v, double factor = 1) noexcept {
+    const Vec3 by = factor * v;
+    xx += by.x * v.x;
+    yy += by.y * v.y;
+    zz += by.z * v.z;
+    xy += by.x * v.y;
+    xz += by.x * v.z;
+    yz += by.y * v.z;
   }
   /// Adds the same variance in all directions [m^2].
   void add(double variance) noexcept {
@@ -74,6 +75,28 @@ struct Covariance {
     const Vec3 x = turn(Vec3{xx, xy, xz}), y = turn(Vec3{xy, yy, yz}), z = turn(Vec3{xz, yz, zz});  // columns, turned
     const Vec3 a = turn(Vec3{x.x, y.x, z.x}), b = turn(Vec3{x.y, y.y, z.y}), c = turn(Vec3{x.z, y.z, z.z});
     return {a.x, b.y, c.z, a.y, a.z, b.z};
+  }
+};
+
+/// Stated error of a point: reported place less the centroid of the power that its pulse lit.
+struct PointUncertainty {
+  /// Reasons why an error may be greater than stated.
+  enum Flag : std::uint8_t {
+    mixed = 1,     ///< the beam did not lie on one smooth, evenly bright surface, or was not judged
+    weak = 2,      ///< so near the noise that an echo may be lost, or its range off
+    indirect = 4,  ///< light by way of glass, water, mirrors or haze
+    biased = 8,    ///< on a slope, the detector errs by more than a fifth of the stated deviation
+    unstated = 16  ///< the instrument measures its beam with errors that it does not state
+  };
+  Covariance random{};      ///< of errors that are drawn anew for each pulse [m^2]
+  Covariance systematic{};  ///< of those that neighbouring points share [m^2]
+  std::uint8_t flags = 0;   ///< sum of `Flag`; 0: as stated
+
+  /// Covariance of the whole error [m^2].
+  [[nodiscard]] Covariance total() const noexcept {
+    Covariance both = random;
+    both.add(systematic);
+    return both;
   }
 };
 

@@ -34,11 +34,12 @@ struct PointSettings {
   Vec3 origin{};                                         ///< place of coordinates 0 in the world [m]
   std::vector<std::uint16_t> rings{};                    ///< see `SpinningSensor::rings`; empty: channel
   double start_time = 0;                                 ///< clock time at tick 0 [s]
-  std::vector<Laser> lasers{};    ///< of each channel, the last of all further ones; empty: default
-  double power_reference = 1e-9;  ///< power of 0 dB of intensity_level [W]
-  SurfaceQuery surfaces{};        ///< of echoes, see `surfaces_of`; empty: unknown
-  PointColours colours{};         ///< of echoes, see `colours_of`; empty: unknown
-  ObjectAttributes attributes{};  ///< attributes of objects
+  std::vector<Laser> lasers{};     ///< of each channel, the last of all further ones; empty: default
+  double power_reference = 1e-9;   ///< power of 0 dB of intensity_level [W]
+  SurfaceQuery surfaces{};         ///< of echoes, see `surfaces_of`; empty: unknown
+  PointColours colours{};          ///< of echoes, see `colours_of`; empty: unknown
+  UncertaintyQuery uncertainty{};  ///< of echoes, see `uncertainty_of`; empty: unknown
+  ObjectAttributes attributes{};   ///< attributes of objects
 
   void validate() const {
     require_finite("PointSettings::origin (length)", length(origin), "m");
@@ -77,23 +78,25 @@ struct PointSurface {
 
 /// Point of an echo, as columns read it. What no column of a layout needs is empty.
 struct PointView {
-  const Shot& shot;                       ///< pulse of the echo
-  const Echo& echo;                       ///< echo
-  const PointSettings& settings;          ///< settings of the points
-  const Tick& scan_start;                 ///< start of the scan
-  Vec3 position{};                        ///< position in the frame and axes of the points [m]
-  const PointSurface* surface = nullptr;  ///< surface; null if unknown
-  const PointColour* colour = nullptr;    ///< colour; null if unknown
-  const double* attributes = nullptr;     ///< attributes of the object, in order of their names
+  const Shot& shot;                               ///< pulse of the echo
+  const Echo& echo;                               ///< echo
+  const PointSettings& settings;                  ///< settings of the points
+  const Tick& scan_start;                         ///< start of the scan
+  Vec3 position{};                                ///< position in the frame and axes of the points [m]
+  const PointSurface* surface = nullptr;          ///< surface; null if unknown
+  const PointColour* colour = nullptr;            ///< colour; null if unknown
+  const double* attributes = nullptr;             ///< attributes of the object, in order of their names
+  const PointUncertainty* uncertainty = nullptr;  ///< uncertainty, in the axes of the points; null if unknown
 };
 
 /// Part of a point that a column needs besides pulse and echo.
 enum class PointNeed : std::uint8_t {
-  nothing,   ///< pulse and echo suffice
-  position,  ///< position in the frame and axes of the points
-  surface,   ///< surface, by `PointSettings::surfaces`
-  colour,    ///< colour, by `PointSettings::colours`
-  attribute  ///< attribute of the object, by `PointSettings::attributes`
+  nothing,     ///< pulse and echo suffice
+  position,    ///< position in the frame and axes of the points
+  surface,     ///< surface, by `PointSettings::surfaces`
+  colour,      ///< colour, by `PointSettings::colours`
+  attribute,   ///< attribute of the object, by `PointSettings::attributes`
+  uncertainty  ///< uncertainty, by `PointSettings::uncertainty`
 };
 
 /// Column of a point.
@@ -143,6 +146,22 @@ template <auto Channel>
 double of_colour(View p) noexcept {
   return p.colour ? (*p.colour).*Channel : std::numeric_limits<double>::quiet_NaN();
 }
+template <auto Element, bool systematic = false>
+double of_uncertainty(View p) noexcept {
+  if (!p.uncertainty) return std::numeric_limits<double>::quiet_NaN();
+  return p.uncertainty->systematic.*Element + (systematic ? 0 : p.uncertainty->random.*Element);
+}
+/// Column of an element of a covariance, of the whole error or of its systematic part.
+template <auto Element, bool systematic = false>
+constexpr PointColumn covariance(std::string_view name) noexcept {
+  return {name,
+          "m^2",
+          NumberType::float32,
+          of_uncertainty<Element, systematic>,
+          systematic ? "of what neighbours share" : "of the place",
+          PointNeed::uncertainty};
+}
+inline double uncertainty_flags_of(View p) noexcept { return p.uncertainty ? p.uncertainty->flags : 255; }
 template <auto Index>
 double of_scene(View p) noexcept {
   return p.surface ? p.surface->interaction.*Index : std::numeric_limits<double>::infinity();
@@ -231,7 +250,21 @@ inline constexpr std::array point_columns = [] {
       PointColumn{"velocity_y", "m/s", float32, of_surface<velocity, 1>, "velocity of surface", surface},
       PointColumn{"velocity_z", "m/s", float32, of_surface<velocity, 2>, "velocity of surface", surface},
       PointColumn{"part", "", uint32, of_scene<part>, "part; largest if unknown", surface},
-      PointColumn{"material", "", uint16, of_scene<material>, "material; largest if unknown", surface}};
+      PointColumn{"material", "", uint16, of_scene<material>, "material; largest if unknown", surface},
+      covariance<&Covariance::xx>("variance_x"),
+      covariance<&Covariance::yy>("variance_y"),
+      covariance<&Covariance::zz>("variance_z"),
+      covariance<&Covariance::xy>("covariance_xy"),
+      covariance<&Covariance::xz>("covariance_xz"),
+      covariance<&Covariance::yz>("covariance_yz"),
+      covariance<&Covariance::xx, true>("systematic_variance_x"),
+      covariance<&Covariance::yy, true>("systematic_variance_y"),
+      covariance<&Covariance::zz, true>("systematic_variance_z"),
+      covariance<&Covariance::xy, true>("systematic_covariance_xy"),
+      covariance<&Covariance::xz, true>("systematic_covariance_xz"),
+      covariance<&Covariance::yz, true>("systematic_covariance_yz"),
+      PointColumn{"uncertainty_flags", "", uint8, uncertainty_flags_of, "0: error as stated; 255: unknown",
+                  PointNeed::uncertainty}};
 }();
 
 /// Columns of points by default in Python, read from pulse and echo alone: those up to `kind`.

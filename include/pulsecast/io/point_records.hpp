@@ -111,6 +111,7 @@ class PointEncoder {
     surfaces_ = layout_.needs(PointNeed::surface) && settings_.surfaces;
     colours_ = layout_.needs(PointNeed::colour) && settings_.colours;
     attributes_ = layout_.needs(PointNeed::attribute);
+    uncertain_ = layout_.needs(PointNeed::uncertainty) && settings_.uncertainty;
     for (const PointField& field : layout_.fields) numbers_.push_back(number_of(field));
     begin_scan({});
   }
@@ -169,7 +170,9 @@ class PointEncoder {
           records += layout_.size;
           continue;
         }
-        set(*std::construct_at(&points.views[count], PointView{shot, echo, settings_, start_}), frame);
+        PointView& view = *std::construct_at(&points.views[count], PointView{shot, echo, settings_, start_});
+        set(view, frame);
+        if (uncertain_) view.uncertainty = std::construct_at(&points.uncertainties[count], uncertainty(view, frame));
         if (++count == points.views.size()) store_all();
       }
     }
@@ -180,8 +183,13 @@ class PointEncoder {
   using Frame = Pose<frame::World, frame::Instrument>;
 
   /// Points that are stored together, field by field.
-  union Points {
-    std::array<PointView, 32> views;
+  struct Points {
+    union {
+      std::array<PointView, 32> views;
+    };
+    union {
+      std::array<PointUncertainty, 32> uncertainties;
+    };
     Points() noexcept {}  // leaves them unset
   };
 
@@ -259,10 +267,21 @@ class PointEncoder {
     if (attributes_) view.attributes = settings_.attributes.of(view.echo.object).data();
   }
 
+  /// Uncertainty of a point, in its axes.
+  [[nodiscard]] PointUncertainty uncertainty(const PointView& view, const Frame* frame) const {
+    PointUncertainty u = settings_.uncertainty(view.shot, view.echo);
+    const auto turned = [&](const Vec3& v) { return in_axes(frame ? frame->direction(v) : v); };
+    if (frame || settings_.axes != PointAxes::right_forward_up)
+      for (Covariance* part : {&u.random, &u.systematic}) *part = part->in_axes(turned);
+    return u;
+  }
+
   template <class Use>
   void see(const EchoBatch& batch, const Shot& shot, const Echo& echo, const Frame* frame, const Use& use) const {
     PointView view{shot, echo, settings_, start_};
     set(view, frame);
+    std::optional<PointUncertainty> stated;
+    if (uncertain_) view.uncertainty = &stated.emplace(uncertainty(view, frame));
     std::optional<PointSurface> surface;
     std::optional<PointColour> colour;
     if (surfaces_)
@@ -282,8 +301,8 @@ class PointEncoder {
 
   PointLayout layout_;
   PointSettings settings_;
-  std::vector<Number> numbers_;                                                    // one a field
-  bool places_ = false, surfaces_ = false, colours_ = false, attributes_ = false;  // needs
+  std::vector<Number> numbers_;                                                                        // one a field
+  bool places_ = false, surfaces_ = false, colours_ = false, attributes_ = false, uncertain_ = false;  // needs
   Tick start_{};
   Frame frame_{};  // of a scan without distortion
 };

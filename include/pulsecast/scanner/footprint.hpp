@@ -219,6 +219,15 @@ struct TurnedFootprint : Pattern {
   explicit TurnedFootprint(Pattern pattern) : Pattern(std::move(pattern)) {}  ///< of a footprint
 };
 
+/// Footprint whose surveys judge the surface that each pulse met, for `uncertainty_of`:
+/// `JudgedFootprint{LatticeFootprint{}}`.
+template <Footprint Pattern>
+struct JudgedFootprint : Pattern {
+  using refinements = refines<tag::JudgesSurfaces>;
+  [[nodiscard]] constexpr bool judges_surfaces() const noexcept { return true; }
+  explicit JudgedFootprint(Pattern pattern) : Pattern(std::move(pattern)) {}  ///< of a footprint
+};
+
 }  // namespace PULSECAST_NAMESPACE
 
 #endif

@@ -12,6 +12,9 @@ namespace PULSECAST_NAMESPACE {
 /// Surface that an echo of a batch came from: normal, part, material, velocity. Empty if unknown.
 using SurfaceQuery = std::function<std::optional<SurfaceInteraction>(const EchoBatch&, const Shot&, const Echo&)>;
 
+/// Uncertainty of an echo, as of `uncertainty_of`.
+using UncertaintyQuery = std::function<PointUncertainty(const Shot&, const Echo&)>;
+
 /// Query of the surfaces of a world, which must outlive it, by one more ray per echo. The ray
 /// follows the pulse's axis, or of a footprint `WithSubrayRecord` the subray whose hit has the
 /// echo's labels and is nearest to it in range. The surface is the first of the echo's object and

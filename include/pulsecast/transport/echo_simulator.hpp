@@ -5,6 +5,7 @@
 
 #include <pulsecast/scanner/footprint.hpp>
 #include <pulsecast/transport/detail/block_pulse.hpp>
+#include <pulsecast/transport/detail/judged_surface.hpp>
 #include <pulsecast/transport/direct_light.hpp>
 
 namespace PULSECAST_NAMESPACE {
@@ -21,7 +22,7 @@ struct ReceiverUnit {
 /// `Survey` is this after a source of pulses. Immutable. Refers to the map, which must outlive it.
 template <Footprint Footprint, Target Target, Detector Detector, Transport<Target> Transport = DirectLight>
 class EchoSimulator {
-  static_assert(detail::members_checked<Footprint, tag::RecordsSubrays, tag::RotatesPerPulse> &&
+  static_assert(detail::members_checked<Footprint, tag::RecordsSubrays, tag::RotatesPerPulse, tag::JudgesSurfaces> &&
                 detail::detector_checked<Detector>);
   static_assert(!ReadsVelocity<Detector> || TracesVelocity<Transport, Target>,
                 "Survey: the detector reads velocities, which this transport does not set; give it trace<true>, as "
@@ -186,19 +187,13 @@ class EchoSimulator {
     return pulse;
   }
 
-  [[nodiscard]] TransportInput light_of(const Pulse<frame::World>& pulse, PulseIndex i,
-                                        const EmitterConstants& constants, Workspace& w) const noexcept {
-    const Unit& unit = receivers_[constants.emitter.receiver];
+  [[nodiscard]] TransportResult trace(const Pulse<frame::World>& pulse, PulseIndex i, const EmitterConstants& constants,
+                                      Workspace& w) const noexcept {
     const auto& [emitter, budget, beam, errs, errors] = constants;
+    const Unit& unit = receivers_[emitter.receiver];
     TransportInput light{pulse, i, seed_, emitter, beam, unit.footprint.size(), budget, w.white_target};
     light.gate = unit.receiver.gate();
     if constexpr (recorded) light.record = w.subrays;
-    return light;
-  }
-
-  [[nodiscard]] TransportResult trace(const Pulse<frame::World>& pulse, PulseIndex i, const EmitterConstants& constants,
-                                      Workspace& w) const noexcept {
-    const TransportInput light = light_of(pulse, i, constants, w);
     if constexpr (ReadsVelocity<Detector>)
       return transport_.template trace<true>(*target_, light, w.transport, w.reflections);
     else
@@ -341,7 +336,10 @@ Outcome EchoSimulator<Footprint, Target, Detector, Transport>::operator()(
   if constexpr (!RunsWithoutReflections<Detector>)
     if (result.dark()) return out;
 
-  detect(i, constants, {w.reflections.data(), result.reflections}, result.continuous, w.white_target, w, out);
+  const std::span<Reflection> reflections{w.reflections.data(), result.reflections};
+  if constexpr (JudgesSurfaces<Footprint>)
+    out.shot.surface = detail::judged_surface(constants.beam, receivers_[emitter.receiver].footprint, reflections);
+  detect(i, constants, reflections, result.continuous, w.white_target, w, out);
   return out;
 }
 

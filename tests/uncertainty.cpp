@@ -1,0 +1,221 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#include <pulsecast/uncertainty.hpp>
+
+#include <cstdlib>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <pulsecast/base/units.hpp>
+#include <pulsecast/deflector/deflector.hpp>
+#include <pulsecast/deflector/fixed_beam.hpp>
+#include <pulsecast/deflector/oscillating_mirror.hpp>
+#include <pulsecast/deflector/polygon_mirror.hpp>
+#include <pulsecast/deflector/rotating_head.hpp>
+#include <pulsecast/detector/band_limited_receiver.hpp>
+#include <pulsecast/detector/first_hit.hpp>
+#include <pulsecast/detector/full_waveform.hpp>
+#include <pulsecast/platform/pose_errors.hpp>
+#include <pulsecast/platform/straight_line.hpp>
+#include <pulsecast/platform/tripod.hpp>
+#include <pulsecast/scanner/scanner.hpp>
+#include <pulsecast/sensor/velodyne.hpp>
+
+#include <doctest/doctest.h>
+
+#include "support/generators.hpp"
+
+using namespace pulsecast;
+using namespace pulsecast::literals;
+
+namespace {
+
+/// Ground that rises to the north-east, and a wall on it that faces south.
+struct Yard {
+  double slope = 0.1, wall = 8, height = 4;  ///< of the ground; the wall's north and height [m]
+
+  std::optional<Hit> closest_hit(const Ray& ray) const noexcept {
+    Hit hit{detail::infinity, 0, 0, 0, 0};
+    const Vec3 normal = normalize(Vec3{-slope, -slope, 1});
+    const auto meet = [&](const Vec3& n, double range, ObjectId object) {
+      const double cosine = std::fabs(dot(n, ray.direction));
+      if (range > 0 && range < hit.range) hit = {range, cosine, cosine / pi, object, 0};
+    };
+    meet(normal, -dot(normal, ray.origin) / dot(normal, ray.direction), 1);
+    const double north = (wall - ray.origin.y) / ray.direction.y;
+    const Vec3 at = ray.origin + north * ray.direction;
+    if (at.z < slope * (at.x + at.y) + height) meet(axis::forward, north, 2);
+    return hit.range < detail::infinity ? std::optional(hit) : std::nullopt;
+  }
+};
+
+/// Eigenvalues and vectors of a covariance, by rotations. Source: Jacobi 1846.
+struct Axes {
+  Matrix3 vectors{1.0};
+  Vec3 values{};
+
+  explicit Axes(const Covariance& c) {
+    double m[3][3] = {{c.xx, c.xy, c.xz}, {c.xy, c.yy, c.yz}, {c.xz, c.yz, c.zz}};
+    for (int sweep = 0; sweep < 30; ++sweep)
+      for (const auto& [p, q] : {std::pair(0, 1), std::pair(0, 2), std::pair(1, 2)}) {
+        if (m[p][q] == 0) continue;
+        const double angle = 0.5 * std::atan2(2 * m[p][q], m[q][q] - m[p][p]), cosine = std::cos(angle),
+                     sine = std::sin(angle);
+        for (int k = 0; k < 3; ++k) {
+          const double a = m[k][p], b = m[k][q], u = vectors[p][k], v = vectors[q][k];
+          m[k][p] = cosine * a - sine * b;
+          m[k][q] = sine * a + cosine * b;
+          vectors[p][k] = cosine * u - sine * v;
+          vectors[q][k] = sine * u + cosine * v;
+        }
+        for (int k = 0; k < 3; ++k) {
+          const double a = m[p][k], b = m[q][k];
+          m[p][k] = cosine * a - sine * b;
+          m[q][k] = sine * a + cosine * b;
+        }
+      }
+    values = {m[0][0], m[1][1], m[2][2]};
+  }
+};
+
+/// Whether an error lies within the bounds of chi-square of 50 and 95 %, with the rank of its covariance.
+struct Within {
+  bool half, most;
+};
+Within within(const Covariance& stated, const Vec3& error) {
+  constexpr double bounds[3][2] = {{0.454936423, 3.841458821}, {1.386294361, 5.991464547}, {2.365973884, 7.814727903}};
+  const Axes axes(stated);
+  const double greatest = std::max({axes.values.x, axes.values.y, axes.values.z});
+  double square = 0;
+  int rank = 0;
+  for (int k = 0; k < 3; ++k) {
+    if (!(axes.values[k] > 1e-8 * greatest)) continue;
+    const double along = dot(Vec3(axes.vectors[k]), error);
+    square += along * along / axes.values[k];
+    ++rank;
+  }
+  return {square <= bounds[rank - 1][0], square <= bounds[rank - 1][1]};
+}
+
+/// Shares of the points of many surveys, each with errors drawn anew, whose errors are within the bounds.
+struct Coverage {
+  double half = 0, most = 0, points = 0, flagged = 0, flagged_most = 0;
+};
+
+/// Of `pulses` pulses of each of the surveys `make(seed)`.
+Coverage coverage_of(std::size_t surveys, PulseIndex pulses, const auto& make) {
+  Coverage c;
+  const auto first = make(0);
+  const UncertaintyQuery uncertainty = uncertainty_of(first);
+  for (std::uint64_t seed = 0; seed < surveys; ++seed) {
+    const auto survey = make(seed);
+    auto w = survey.workspace();
+    for (PulseIndex k = 0; k < pulses; ++k) {
+      const PulseIndex i = k * (survey.size() / pulses);
+      const auto pulse = survey.source().pulse(i);
+      if (!pulse) continue;
+      const Outcome outcome = survey(i, w);
+      // subrays are recorded by the reported pose
+      const auto back = pulse->pose * pulse->reported.value_or(pulse->pose).inverse();
+      Vec3 lit{};
+      double power = 0;
+      for (const SubrayRecord& subray : outcome.subrays) {
+        if (!(subray.power > 0)) continue;
+        lit += subray.power * (back.point(subray.point) - pulse->pose.position);
+        power += subray.power;
+      }
+      for (const Echo& echo : outcome.echoes) {
+        const PointUncertainty u = uncertainty(outcome.shot, echo);
+        const Vec3 error = (point_of(outcome.shot, echo) - pulse->pose.position) - lit / power;
+        const Within in = within(u.total(), error);
+        (u.flags == 0 ? c.points : c.flagged) += 1;
+        if (u.flags == 0) {
+          c.half += in.half;
+          c.most += in.most;
+        } else {
+          c.flagged_most += in.most;
+        }
+      }
+    }
+  }
+  c.half /= std::max(1.0, c.points);
+  c.most /= std::max(1.0, c.points);
+  c.flagged_most /= std::max(1.0, c.flagged);
+  return c;
+}
+
+/// Surveys of a scene in all; the environment variable PULSECAST_SURVEYS asks for another number.
+std::size_t surveys() {
+  const char* text = std::getenv("PULSECAST_SURVEYS");
+  return text ? std::strtoul(text, nullptr, 10) : 400;
+}
+
+template <class Pattern>
+auto judged(Pattern pattern) {
+  return WithSubrayRecord{JudgedFootprint{std::move(pattern)}};
+}
+
+/// Checks a scene: its surveys are independent, the points of one are not.
+void check(const char* name, const auto& make) {
+  const double n = static_cast<double>(surveys());
+  const Coverage c = coverage_of(surveys(), n > 1000 ? 100 : 20, make);
+  const std::string text = std::string(name) + ": of " + std::to_string(c.points) + " points " +
+                           std::to_string(100 * c.most) + " % within 95 %, " + std::to_string(100 * c.half) +
+                           " % within 50 %; flagged " + std::to_string(c.flagged) + ", of these " +
+                           std::to_string(100 * c.flagged_most) + " %";
+  CAPTURE(text);
+  MESSAGE(text);
+  CHECK(c.points > 5 * n);
+  CHECK(std::fabs(c.most - 0.95) < 0.01 + 4 * std::sqrt(0.0475 / n));
+  CHECK(std::fabs(c.half - 0.5) < 0.02 + 4 * std::sqrt(0.25 / n));
+}
+
+}  // namespace
+
+TEST_CASE("points of a tripod err as stated") {
+  const Yard yard;
+  check("tripod", [&](std::uint64_t seed) {
+    const Laser laser{.wavelength = 1.55e-6, .peak_power = 100, .pulse_length = 2e-9, .divergence = 0.3e-3};
+    return Survey{
+        WithPoseErrors{Platform{Tripod{{5, -20, 3}}, Mount{},
+                                Deflector{RotatingHead{.angular_rate = 0.5},
+                                          Deflector{PolygonMirror{.line_rate = 20, .sweep = 0.3},
+                                                    Scanner{.pulse_rate = 10e3, .pulses = 4000, .laser = laser}}}},
+                       PoseErrors{.angular_jitter = 0.05_mrad,
+                                  .seed = seed,
+                                  .position_offset = 3_mm,
+                                  .attitude_offset = {0.02_mrad, 0.02_mrad, 0.1_mrad}}},
+        judged(LatticeFootprint{19}),
+        yard,
+        Receiver{.range_errors = {.deviation = 2_mm, .grows_with_incidence = true, .bias_deviation = 1_mm}},
+        FullWaveform<>{},
+        seed};
+  });
+}
+
+TEST_CASE("points of an airplane with correlated pose errors err as stated") {
+  const Yard yard;
+  check("airplane", [&](std::uint64_t seed) {
+    const Laser laser{.peak_power = 5e3, .pulse_length = 4e-9, .divergence = 0.25e-3};
+    return Survey{
+        WithPoseErrors{Platform{StraightLine{{-200, -300, 1000}, {200, 300, 1000}, 60},
+                                Mount{.lever_arm = {0.2, -1, 0.5}, .boresight = rotation_about(axis::right, -90_deg)},
+                                Deflector{OscillatingMirror{.cycle_rate = 50, .half_angle = 0.2},
+                                          Scanner{.pulse_rate = 2e3, .pulses = 20000, .laser = laser}}},
+                       PoseErrors{.position_noise = 5_mm,
+                                  .attitude_noise = 0.01_mrad,
+                                  .position_drift = {3_cm, 3_cm, 5_cm},
+                                  .attitude_drift = {0.05_mrad, 0.05_mrad, 0.1_mrad},
+                                  .drift_time = 3,
+                                  .seed = seed,
+                                  .lever_arm_deviation = 1_cm,
+                                  .boresight_deviation = {0.02_mrad, 0.02_mrad, 0.07_mrad}}},
+        judged(LatticeFootprint{19}),
+        yard,
+        Receiver{.range_errors = {.scale_deviation = 1e-5}},
+        FullWaveform<NoWidth, BandLimitedReceiver<>>{
+            {.threshold = 2e-8}, {}, BandLimitedReceiver<>{{.noise_power = 3e-13}}},
+        seed};
+  });
+}
