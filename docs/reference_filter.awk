@@ -22,7 +22,7 @@ BEGIN {
   of["poses"] = "MovesInLanes"; of["pulse_lanes"] = "MakesLanes"; of["slot_from"] = "FindsSlots"; of["next_pulse"] = "SkipsBlocked"
   of["backscatter"] = of["scattered_share"] = "ScatteringLaw"; of["scattered"] = "ScattersBetween"; of["sample"] = "SamplesDirections"
   of["returned_share"] = of["returned_half_angle"] = "Retroreflects"
-  of["draw_for_leg"] = "DrawsByLeg"; of["power"] = "PulseForm"; of["min_share"] = "TruncatedWidthMeasure"
+  of["draw_for_leg"] = "DrawsByLeg"; of["visit_errors"] = "StatesErrors"; of["judges_surfaces"] = "JudgesSurfaces"; of["power"] = "PulseForm"; of["min_share"] = "TruncatedWidthMeasure"
   for (name in of) says[name] = "As the concept " of[name] " requires."
   says["size"] = "Number of elements."
   says["all_hits"] = "Calls `visitor(hit)` with every `RayHit` of a ray, by range. Returns the number of calls."

@@ -219,3 +219,95 @@ TEST_CASE("points of an airplane with correlated pose errors err as stated") {
         seed};
   });
 }
+
+TEST_CASE("points of a drone err as stated") {
+  const Yard yard;
+  check("drone", [&](std::uint64_t seed) {
+    const Laser laser{.wavelength = 905e-9, .peak_power = 50, .pulse_length = 5e-9, .divergence = {2e-3, 0.5e-3}};
+    return Survey{
+        WithPoseErrors{Platform{StraightLine{{-20, -30, 40}, {20, 30, 45}, 5},
+                                Mount{.boresight = rotation_about(axis::right, -80_deg)},
+                                Deflector{PolygonMirror{.line_rate = 30, .sweep = 0.4},
+                                          Scanner{.pulse_rate = 1e3, .pulses = 14000, .laser = laser}}},
+                       PoseErrors{.position_noise = {1_cm, 1_cm, 2_cm},
+                                  .attitude_noise = {0.3_mrad, 0.3_mrad, 1_mrad},
+                                  .attitude_drift = 0.2_mrad,
+                                  .drift_time = 2,
+                                  .angular_jitter = {0.1_mrad, 0, 0.4_mrad},
+                                  .seed = seed,
+                                  .lever_arm_deviation = {2_mm, 2_mm, 5_mm},
+                                  .latency_deviation = 1e-3}},
+        judged(SunflowerFootprint{37}),
+        yard,
+        Receiver{.range_min = 10, .range_max = 120, .range_errors = {.deviation = 1.5_cm, .bias_deviation = 2_mm}},
+        FullWaveform<NoWidth, BandLimitedReceiver<>>{
+            {.threshold = 1e-7}, {}, BandLimitedReceiver<>{{.noise_power = 1e-12, .shot_noise = true}}},
+        seed};
+  });
+}
+
+TEST_CASE("points of a car err as stated") {
+  const Yard yard;
+  check("car", [&](std::uint64_t seed) {
+    const Laser laser{.wavelength = 1.55e-6, .peak_power = 300, .pulse_length = 3e-9, .divergence = 0.35e-3};
+    return Survey{
+        WithPoseErrors{Platform{StraightLine{{-30, 0, 2}, {30, 2, 5}, 12},
+                                Mount{.lever_arm = {0, -0.5, 1}, .boresight = rotation_about(axis::up, 45_deg)},
+                                Deflector{PolygonMirror{.line_rate = 100, .sweep = 0.5},
+                                          Scanner{.pulse_rate = 5e3, .pulses = 25000, .laser = laser}}},
+                       PoseErrors{.position_drift = {2_cm, 2_cm, 4_cm},
+                                  .attitude_drift = {0.1_mrad, 0.1_mrad, 0.3_mrad},
+                                  .drift_time = 1,
+                                  .seed = seed,
+                                  .boresight_deviation = 0.2_mrad}},
+        judged(TurnedFootprint{LatticeFootprint{19}}),
+        yard,
+        Receiver{.range_errors = {.deviation_at_watt = 4e-5, .power_exponent = -0.4}},
+        FullWaveform<>{},
+        seed};
+  });
+}
+
+TEST_CASE("points of a spinning sensor err as stated") {
+  const Yard yard;
+  SpinningSensor sensor = velodyne_vlp_16();
+  check("spinning sensor", [&](std::uint64_t seed) {
+    return Survey{WithPoseErrors{Platform{StraightLine{{-3, -10, 1.8}, {3, 0, 2.0}, 1.5},
+                                          Mount{.lever_arm = {0, 0, 0.4}}, sensor.source(1)},
+                                 PoseErrors{.position_noise = 2_mm,
+                                            .attitude_noise = 0.5_mrad,
+                                            .seed = seed,
+                                            .position_offset = 1_cm,
+                                            .attitude_offset = 1_mrad,
+                                            .boresight_deviation = 2_mrad}},
+                  WithSubrayRecord{SingleRay{}},
+                  yard,
+                  sensor.receiver(),
+                  FirstHit{},
+                  seed};
+  });
+}
+
+TEST_CASE("points of a satellite err as stated") {
+  const Yard hill{.slope = 0.02};
+  check("satellite", [&](std::uint64_t seed) {
+    const Laser laser{.peak_power = 1e7, .pulse_length = 15e-9, .divergence = 25e-6};
+    return Survey{
+        WithPoseErrors{Platform{StraightLine{{0, -70e3, 500e3}, {0, 70e3, 500e3}, 7600},
+                                Mount{.boresight = rotation_about(axis::right, -89.7_deg)},
+                                Deflector{FixedBeam{}, Scanner{.pulse_rate = 40, .pulses = 700, .laser = laser}}},
+                       PoseErrors{.position_noise = 5_cm,
+                                  .attitude_noise = 1e-6,
+                                  .position_drift = 10_cm,
+                                  .attitude_drift = 5e-6,
+                                  .drift_time = 5,
+                                  .seed = seed,
+                                  .boresight_deviation = 3e-6}},
+        judged(LatticeFootprint{37}),
+        hill,
+        Receiver{.diameter = 0.8, .range_min = 499e3, .range_max = 502e3},
+        FullWaveform<NoWidth, BandLimitedReceiver<>>{
+            {.sample_interval = 1e-9, .threshold = 1e-9}, {}, BandLimitedReceiver<>{{.noise_power = 1e-14}}},
+        seed};
+  });
+}

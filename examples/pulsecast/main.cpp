@@ -105,6 +105,7 @@ Loading loading_of(const Options& o, const SurveyFile& file, std::uint64_t seed)
                        .las_waveforms = o.format == "las" && o.write_waveform && !o.las_1_0,
                        .waveform_noise = o.waveform_noise,
                        .fixed_incidence = o.fixed_incidence,
+                       .uncertainty = o.states_uncertainty(),
                        .library_physics = o.library_physics,
                        .light_paths = o.light_paths,
                        .platform_noise = o.platform_noise,
@@ -372,6 +373,7 @@ class Session {
           << text::to_text(in.vertical_unit) << ',' << hex(wkt.value());
     }
     if (options_.project_to != 0) out << " project=" << options_.project_from << ':' << options_.project_to;
+    if (options_.uncertainty) out << " uncertainty";
     if (options_.colours) out << " colours=" << options_.near_infrared;
     for (const std::string& column : options_.columns) out << " column=" << column;
     if (point_format(options_.format).in_scans) out << " scans=" << text::to_text(options_.scan_rate);

@@ -258,6 +258,8 @@ class CommandLine {
                         names_of_columns())
         ->type_name("NAME,NAME")
         ->delimiter(',');
+    app_.add_flag("--uncertainty", o_.uncertainty,
+                  "Columns of the covariance of each point, by the errors that the survey draws");
     app_.add_flag(both("splitByChannel"), o_.split_by_channel, "Write a file of points for each channel");
     app_.add_flag(both("disablePlatformNoise"), no_platform_noise_, "No platform noise");
     app_.add_flag(both("disableLegNoise"), no_leg_noise_, "No random offset of the start of legs");
@@ -382,8 +384,8 @@ class CommandLine {
     if (o_.las_1_0 && format.kind != PointKind::las) return "--las10 and " + name + ": expected --format las";
     if (o_.colours && !format.colours)
       return "--colours and " + name + ": it has no colours" + expected([](const auto& f) { return f.colours; });
-    if (!o_.columns.empty() && format.kind == PointKind::fixed)
-      return "--columns and " + name + ": it has no further columns" +
+    if ((!o_.columns.empty() || o_.uncertainty) && format.kind == PointKind::fixed)
+      return (o_.uncertainty ? "--uncertainty and " : "--columns and ") + name + ": it has no further columns" +
              expected([](const auto& f) { return f.kind != PointKind::fixed; });
     if (!scan_rate_.empty() && !format.in_scans)
       return "--scanRate and " + name + ": it is not in scans" + expected([](const auto& f) { return f.in_scans; });

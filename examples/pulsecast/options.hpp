@@ -54,8 +54,8 @@ struct Options {
   std::filesystem::path wkt{};                     ///< file of its text; empty: by `reference`
   std::uint16_t project_from = 0, project_to = 0;  ///< systems of --project; 0: that of the datum; none
   bool las_1_0 = false;                            ///< write LAS 1.0
-  bool write_waveform = false, write_pulse = false, echo_width = false, waveform_noise = false, fixed_incidence = false,
-       library_physics = false, light_paths = false;
+  bool write_waveform = false, write_pulse = false, echo_width = false, uncertainty = false, waveform_noise = false,
+       fixed_incidence = false, library_physics = false, light_paths = false;
   bool colours = false, near_infrared = false;  ///< columns of points in LAS
   std::vector<std::string> columns{};           ///< further columns of points, in every format
   bool write_misses = false;                    ///< write a table of the pulses without echoes
@@ -79,6 +79,14 @@ struct Options {
   std::vector<pulsecast::io::PointField> fields{};                  ///< `columns`, once the scene is loaded
   pulsecast::io::PointSettings points{};                            ///< values of `fields`
   std::shared_ptr<const pulsecast::ObjectAttributes> attributes{};  ///< of the scene, once it is loaded; null without
+
+  /// True if a column of the points is of their uncertainty.
+  [[nodiscard]] bool states_uncertainty() const {
+    return uncertainty || std::ranges::any_of(columns, [](const std::string& name) {
+             const auto* const column = pulsecast::io::detail::column_or_null(name);
+             return column && column->needs == pulsecast::io::PointNeed::uncertainty;
+           });
+  }
 };
 
 /// Reads a command line. Empty if nothing remains to be done; then `status` is set.

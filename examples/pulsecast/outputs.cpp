@@ -107,6 +107,8 @@ void take_columns(Options& o, const helios::SurveySettings& survey, const helios
   o.attributes = std::make_shared<const ObjectAttributes>(o.points.attributes);
   if (o.attributes->empty()) o.attributes.reset();
   o.fields = io::layouts::columns(o.columns, o.points.attributes.names());
+  if (o.uncertainty)
+    for (const io::PointField& field : io::layouts::uncertainty()) o.fields.push_back(field);
 }
 
 io::PointLayout point_layout(const Options& o) {

@@ -36,6 +36,22 @@ template <class Inner, class Outer>
   return out;
 }
 
+namespace detail {
+/// Axis times angle of a rotation [rad].
+[[nodiscard]] inline Vec3 turn_of(const Rotation& r) noexcept {
+  const Vec3 axis{r.x, r.y, r.z};
+  const double size = length(axis);
+  return size > 0 ? 2 * std::atan2(size, r.w) / size * axis : Vec3{};
+}
+}  // namespace detail
+
+/// Error that displaces a body from one pose to another, as of a known size.
+template <class Body, class Frame>
+[[nodiscard]] PoseError<Frame> error_between(const Pose<Body, Frame>& from, const Pose<Body, Frame>& to) noexcept {
+  return {to.position - from.position, detail::turn_of(to.rotation * conjugate(from.rotation)), from.position,
+          ErrorScope::survey};
+}
+
 /// Covariance of a vector: a symmetric matrix [m^2].
 struct Covariance {
   double xx = 0, yy = 0, zz = 0;  ///< variances

@@ -68,7 +68,8 @@ class TimingErrors {
    public:
     Trials(const Detector& detector, const Emitter& emitter)
         : detector_(detector), emitter_(emitter), pulse_(0.5 * speed_of_light * emitter.laser.pulse_length) {
-      if ((*this)(1e18, 0, 16).found < 16) base_ = 20;  // farther is ambiguous to some detectors
+      for (const double nearer : {20.0, 5.0, 1.0})  // farther is ambiguous to some detectors
+        if ((*this)(1e18, 0, 16).found < 16) base_ = nearer;
     }
 
     [[nodiscard]] Level operator()(double power, double broadening, std::size_t trials) const {

@@ -21,7 +21,7 @@ struct InstrumentOptions {
 /// trajectory, mount, Instrument{scanner, settings, 60}}`. If inactive, it has no pulses.
 class Instrument {
  public:
-  using refinements = refines<tag::MakesLanes, tag::MeasuresBeam, tag::SkipsBlocked>;
+  using refinements = refines<tag::MakesLanes, tag::MeasuresBeam, tag::SkipsBlocked, tag::StatesErrors>;
   /// `duration` is rounded up to whole slots [s]. @throws SettingError with the attribute at fault
   Instrument(const ScannerSettings& scanner, const LegScannerSettings& settings, double duration,
              const InstrumentOptions& options = {});
@@ -44,6 +44,13 @@ class Instrument {
     const SurveyOptic& optic = channels_.channels()[i % channels()].moving();
     if (!optic.errs()) return std::nullopt;
     return optic.reported(t);
+  }
+
+  /// Errors of deflection, head and range, as the concept StatesErrors requires: of a known size.
+  template <class Visit>
+  void visit_errors(PulseIndex i, Tick t, const Visit& visit) const noexcept {
+    const SurveyOptic& optic = channels_.channels()[i % channels()].moving();
+    if (optic.errs()) visit(error_between(optic.at(t), optic.reported(t)));
   }
 
   /// Number of channels: of n, slot i is slot `i / n` of channel `i % n`.

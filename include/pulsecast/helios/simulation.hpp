@@ -44,6 +44,7 @@ class Simulation {
     bool las_waveforms = false;                   ///< cut and sample waveforms to the limits of LAS
     bool waveform_noise = false;                  ///< add receiver noise
     bool fixed_incidence = false;                 ///< perpendicular incidence, for scattering
+    bool uncertainty = false;                     ///< `points` have the uncertainty of echoes
     bool library_physics = false;                 ///< not that of HELIOS++: docs/surveys.md
     bool light_paths = false;                     ///< multi-bounce light, also without `<light>`
     bool platform_noise = true;                   ///< as in the survey; false: none
@@ -77,7 +78,8 @@ class Simulation {
   /// Legs and their pulses: helios/survey.hpp.
   [[nodiscard]] virtual const CompiledSurvey& compiled() const noexcept = 0;
   [[nodiscard]] virtual Scene scene() const = 0;  ///< size of the scene
-  /// Surfaces, colours and attributes of points, as `io::points_of`; may outlive the simulation.
+  /// Surfaces, colours and attributes of points, as `io::points_of`, and their uncertainty, if it was asked for; may
+  /// outlive the simulation.
   /// @throws SettingError if two parts of one object have different attributes of a name
   [[nodiscard]] virtual io::PointSettings points() const = 0;
 

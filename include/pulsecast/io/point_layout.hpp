@@ -191,6 +191,18 @@ using enum NumberType;
 /// Source: PCL, PointXYZRGB: the bits of 0x00RRGGBB as a float.
 [[nodiscard]] inline std::vector<PointField> packed_colour() { return {{"rgb", float32, column("rgb_bits")}}; }
 
+/// Covariance of a point and its flags, to append to another layout. They need `PointSettings::uncertainty`. NaN, and
+/// flags of 255, if unknown. Source: PDAL, filters.als_tpu, for the names.
+[[nodiscard]] inline std::vector<PointField> uncertainty() {
+  return {{"VarianceX", float32, column("variance_x")},
+          {"VarianceY", float32, column("variance_y")},
+          {"VarianceZ", float32, column("variance_z")},
+          {"CovarianceXY", float32, column("covariance_xy")},
+          {"CovarianceXZ", float32, column("covariance_xz")},
+          {"CovarianceYZ", float32, column("covariance_yz")},
+          {"UncertaintyFlags", uint8, column("uncertainty_flags")}};
+}
+
 /// Attributes of a point's object by `ObjectAttributes::names`. NaN if it has none, 0 in integers.
 [[nodiscard]] inline std::vector<PointField> attributes(std::span<const std::string> names, NumberType type = float64) {
   std::vector<PointField> fields;

@@ -119,27 +119,22 @@ class WithPoseErrors {
     return out;
   }
 
-  /// As the concept StatesErrors requires.
   template <class Visit>
   void visit_errors(PulseIndex i, Tick t, const Visit& visit) const noexcept {
     if constexpr (StatesErrors<Source>) truth_.visit_errors(i, t, visit);
     const Pose<frame::Body, frame::World> body = truth_.trajectory().at(t);
-    const Pose<frame::Instrument, frame::World> instrument = body * truth_.mount().pose();
+    const Pose<frame::Instrument, frame::Body> mount = truth_.mount().pose();
     visit_axes(body, errors_.position_noise, errors_.attitude_noise, ErrorScope::pulse, visit);
     visit_axes(body, errors_.position_drift, errors_.attitude_drift, ErrorScope::correlated, visit);
     visit_axes(body, errors_.position_offset, errors_.attitude_offset, ErrorScope::leg, visit);
     visit_axes(body, errors_.lever_arm_deviation, 0, ErrorScope::survey, visit);
-    visit_axes(instrument, 0, errors_.boresight_deviation, ErrorScope::survey, visit);
+    visit_axes(body * mount, 0, errors_.boresight_deviation, ErrorScope::survey, visit);
     if (errors_.lever_arm_error != Vec3{})
-      visit(PoseError<frame::World>{body.direction(errors_.lever_arm_error), {}, {}, ErrorScope::survey});
+      visit(body * error_between(mount, {mount.rotation, mount.position + errors_.lever_arm_error}));
     if (errors_.boresight_error != no_rotation)
-      visit(instrument *
-            PoseError<frame::Instrument>{{}, turn_of(errors_.boresight_error), Vec3{}, ErrorScope::survey});
-    if (errors_.latency_deviation > 0) {
-      const auto after = truth_.trajectory().at(later(t, errors_.latency_deviation));
-      visit(PoseError<frame::World>{after.position - body.position, turn_of(after.rotation * conjugate(body.rotation)),
-                                    body.position, ErrorScope::survey});
-    }
+      visit(body * error_between(mount, {mount.rotation * errors_.boresight_error, mount.position}));
+    if (errors_.latency_deviation > 0)
+      visit(error_between(body, truth_.trajectory().at(later(t, errors_.latency_deviation))));
     visit_jitter(i, visit);
   }
 
@@ -151,12 +146,6 @@ class WithPoseErrors {
   static Rotation turned_by(const Vec3& angles) noexcept {
     const double angle = length(angles);
     return angle > 0 ? rotation_about(angles, angle) : no_rotation;
-  }
-  /// Axis times angle of a rotation [rad].
-  static Vec3 turn_of(const Rotation& r) noexcept {
-    const Vec3 axis{r.x, r.y, r.z};
-    const double size = length(axis);
-    return size > 0 ? 2 * std::atan2(size, r.w) / size * axis : Vec3{};
   }
   static Tick later(Tick t, double seconds) noexcept { return seconds == 0 ? t : t + Tick::of_seconds(seconds); }
 

@@ -14,7 +14,7 @@ using namespace pulsecast::io;
 int main() {
   constexpr std::array<std::string_view, 11> types{"",       "int8",    "uint8",   "int16", "uint16", "int32",
                                                    "uint32", "float32", "float64", "int64", "uint64"};
-  constexpr std::array<std::string_view, 5> needs{"", "", "the surface", "the colour", ""};
+  constexpr std::array<std::string_view, 6> needs{"", "", "the surface", "the colour", "", "the uncertainty"};
   for (const PointColumn& column : point_columns)
     std::cout << "| `" << column.name << "` | " << column.unit << " | " << types[static_cast<std::size_t>(column.type)]
               << " | " << column.description << " | " << needs[static_cast<std::size_t>(column.needs)] << " |\n";

@@ -99,12 +99,47 @@ struct SurveyNoise {
       if (!n) continue;
       const PulseIndex moment = n->lifespan > 0 ? slot / static_cast<PulseIndex>(n->lifespan) : 0;
       const RandomKey key{.seed = seed, .pulse = moment, .subray = k, .purpose = purpose};
-      const bool is_normal = n->distribution == NoiseDistribution::normal;
-      double value = is_normal ? n->mean + n->deviation * normal(key) : n->low + (n->high - n->low) * uniform(key);
-      if (n->clipped) value = std::clamp(value, n->clip_low, std::max(n->clip_low, n->clip_high));
-      out[static_cast<int>(k)] = value;
+      out[static_cast<int>(k)] = value(*n, uniform(key));
     }
     return out;
+  }
+
+  /// Value of a noise for a uniform draw.
+  [[nodiscard]] static double value(const NoiseSettings& n, double draw) noexcept {
+    const bool is_normal = n.distribution == NoiseDistribution::normal;
+    const double value = is_normal ? n.mean + n.deviation * normal_quantile(draw) : n.low + (n.high - n.low) * draw;
+    return n.clipped ? std::clamp(value, n.clip_low, std::max(n.clip_low, n.clip_high)) : value;
+  }
+
+  /// Error of one axis, as it is stated.
+  struct Stated {
+    Vec3 error;  ///< standard deviation along the axis [m or rad]
+    ErrorScope scope;
+  };
+  /// Errors of a noise: its standard deviation and its mean, from 1,000 quantiles.
+  [[nodiscard]] static std::vector<Stated> stated(const AxisNoise& noise) {
+    constexpr int count = 1000;
+    std::vector<Stated> all;
+    for (int axis = 0; axis < 3; ++axis) {
+      const std::optional<NoiseSettings>& n = noise[static_cast<std::size_t>(axis)];
+      double mean = 0, squares = 0;
+      for (int k = 0; n && k < count; ++k) {
+        const double draw = value(*n, (k + 0.5) / count);
+        mean += draw / count;
+        squares += draw * draw / count;
+      }
+      const auto add = [&](double size, ErrorScope scope) {
+        if (size == 0) return;
+        all.push_back({Vec3{}, scope});
+        all.back().error[axis] = size;
+      };
+      if (!n) continue;
+      add(mean, ErrorScope::survey);
+      add(std::sqrt(std::max(0.0, squares - mean * mean)), n->lifespan == 1  ? ErrorScope::pulse
+                                                           : n->lifespan > 1 ? ErrorScope::correlated
+                                                                             : ErrorScope::leg);
+    }
+    return all;
   }
 };
 
@@ -117,6 +152,8 @@ class SurveyLeg {
       : truth_(std::move(path), mount, std::move(instrument)),
         noise_(std::move(noise)),
         mount_error_(error_of(noise_.mount, mount)),
+        positions_(SurveyNoise::stated(noise_.position)),
+        attitudes_(SurveyNoise::stated(noise_.attitude)),
         noisy_(!noise_.none()),
         known_(std::min(known.value_or(truth_.duration()), truth_.duration())) {}
 
@@ -147,6 +184,17 @@ class SurveyLeg {
 
   [[nodiscard]] PulseIndex next_pulse(PulseIndex i) const noexcept { return truth_.next_pulse(i); }
 
+  template <class Visit>
+  void visit_errors(PulseIndex i, Tick t, const Visit& visit) const noexcept {
+    truth_.visit_errors(i, t, visit);
+    for (const auto& [error, scope] : positions_) visit(PoseError<frame::World>{error, {}, {}, scope});
+    if (mount_error_) visit(error_between(path().at(t), path().at(t) * *mount_error_));
+    if (attitudes_.empty()) return;
+    if (const auto p = truth_.pulse(i))
+      for (const auto& [error, scope] : attitudes_)
+        visit(PoseError<frame::World>{{}, p->pose.direction(error), {}, scope});
+  }
+
   [[nodiscard]] const SurveyPath& path() const noexcept { return truth_.trajectory(); }
   /// Pose of the scanner, without its head and the noise.
   [[nodiscard]] Pose<frame::Instrument, frame::World> instrument_at(Tick t) const noexcept {
@@ -168,6 +216,7 @@ class SurveyLeg {
   Platform<SurveyPath, Instrument> truth_;
   SurveyNoise noise_;
   std::optional<InBody> mount_error_;
+  std::vector<SurveyNoise::Stated> positions_, attitudes_;
   bool noisy_;
   Tick known_;
 };

@@ -9,6 +9,7 @@
 #include <pulsecast/helios/scene.hpp>
 #include <pulsecast/helios/survey.hpp>
 #include <pulsecast/io/las.hpp>
+#include <pulsecast/uncertainty.hpp>
 
 namespace PULSECAST_NAMESPACE::helios {
 
@@ -205,22 +206,28 @@ struct LoadedRepetition {
 
 /// Footprint, receiver and detector of a channel.
 template <class Receiver, EchoWidth Width>
-[[nodiscard]] ReceiverUnit<RingFootprint, SurveyDetector<Receiver>> receiver_unit(const ChannelSettings& channel,
-                                                                                  const WaveformSettings& waveform,
-                                                                                  bool noisy) {
+[[nodiscard]] ReceiverUnit<SurveyFootprint, SurveyDetector<Receiver>> receiver_unit(const ChannelSettings& channel,
+                                                                                    const WaveformSettings& waveform,
+                                                                                    bool noisy, bool judged) {
   const auto unit = [&] {
     if constexpr (std::same_as<Receiver, ReceiverNoise>)
       return survey_receiver_unit<Width>(channel, waveform, noisy);
     else
       return library_receiver_unit<Width>(channel, waveform, noisy);
   }();
-  return {unit.footprint, unit.receiver, SurveyDetector<Receiver>(unit.detector)};
+  return {SurveyFootprint(unit.footprint, judged), unit.receiver, SurveyDetector<Receiver>(unit.detector)};
 }
+
+/// Survey, and what makes the uncertainty of its echoes; empty unless asked for.
+struct JoinedSurvey {
+  AnySurvey survey;
+  std::function<UncertaintyQuery()> uncertainty{};
+};
 
 /// Survey of scene, legs and receivers. Adds warnings of the receivers.
 template <class Receiver>
-[[nodiscard]] AnySurvey joined(const LoadedRepetition& loaded, const ReceiverOverrides& overrides,
-                               std::vector<std::string>& warnings) {
+[[nodiscard]] JoinedSurvey joined(const LoadedRepetition& loaded, const ReceiverOverrides& overrides,
+                                  std::vector<std::string>& warnings) {
   const SurveySettings& survey = loaded.inputs->survey;
   const Simulation::Settings& settings = loaded.inputs->settings;
   const WaveformLimits limits(survey, settings);
@@ -234,23 +241,29 @@ template <class Receiver>
     const double longest = std::min(2 * extent / speed_of_light + 20 * channel.pulse_length, 4e-6);
     WaveformSettings waveform = survey_waveform(channel, waveforms ? longest : 0, library, follows_light);
     limits.limit_record(waveform, warnings);
-    auto unit = widths ? receiver_unit<Receiver, GaussianFit>(channel, waveform, noisy)
-                       : receiver_unit<Receiver, NoWidth>(channel, waveform, noisy);
+    auto unit = widths ? receiver_unit<Receiver, GaussianFit>(channel, waveform, noisy, settings.uncertainty)
+                       : receiver_unit<Receiver, NoWidth>(channel, waveform, noisy, settings.uncertainty);
     if (const std::string air = air_warning(channel.wavelength, unit.receiver); !air.empty()) warnings.push_back(air);
     return unit;
   });
-  return {Survey<Legs<SurveyLeg>, RingFootprint, SurveyScene, SurveyDetector<Receiver>, SurveyLight>(
-              loaded.compiled->source, std::move(units), *loaded.scene, survey_light(survey, follows_light, library),
-              loaded.seed),
-          loaded.scene};
+  using Own = Survey<Legs<SurveyLeg>, SurveyFootprint, SurveyScene, SurveyDetector<Receiver>, SurveyLight>;
+  Own own(loaded.compiled->source, std::move(units), *loaded.scene, survey_light(survey, follows_light, library),
+          loaded.seed);
+  JoinedSurvey both{{own, loaded.scene}};
+  if (settings.uncertainty)
+    both.uncertainty = [scene = loaded.scene,
+                        kept = std::make_shared<const Own>(std::move(own))]() -> UncertaintyQuery {
+      return [scene, kept, of = uncertainty_of(*kept)](const Shot& shot, const Echo& echo) { return of(shot, echo); };
+    };
+  return both;
 }
 
 class LoadedSimulation final : public Simulation {
  public:
   explicit LoadedSimulation(std::shared_ptr<const LoadedRepetition> loaded, const ReceiverOverrides& overrides = {})
-      : loaded_(std::move(loaded)), warnings_(loaded_->warnings), survey_(received(overrides)) {}
+      : loaded_(std::move(loaded)), warnings_(loaded_->warnings), joined_(received(overrides)) {}
 
-  [[nodiscard]] const AnySurvey& survey() const noexcept override { return survey_; }
+  [[nodiscard]] const AnySurvey& survey() const noexcept override { return joined_.survey; }
   [[nodiscard]] const std::vector<std::string>& warnings() const noexcept override { return warnings_; }
   [[nodiscard]] const CompiledSurvey& compiled() const noexcept override { return *loaded_->compiled; }
 
@@ -278,6 +291,7 @@ class LoadedSimulation final : public Simulation {
     };
     points.surfaces = kept(points.surfaces);
     points.colours = kept(points.colours);
+    if (joined_.uncertainty) points.uncertainty = joined_.uncertainty();
     for (const ChannelSettings& channel : loaded_->inputs->survey.scanner.channels)
       points.lasers.push_back(survey_laser(channel, {}));
     return points;
@@ -293,18 +307,18 @@ class LoadedSimulation final : public Simulation {
   }
 
  private:
-  [[nodiscard]] AnySurvey received(const ReceiverOverrides& overrides) {
+  [[nodiscard]] JoinedSurvey received(const ReceiverOverrides& overrides) {
     std::vector<std::string> of_receivers;
-    AnySurvey survey = loaded_->inputs->settings.library_physics
-                           ? joined<BandLimitedReceiver<>>(*loaded_, overrides, of_receivers)
-                           : joined<ReceiverNoise>(*loaded_, overrides, of_receivers);
+    JoinedSurvey joined_survey = loaded_->inputs->settings.library_physics
+                                     ? joined<BandLimitedReceiver<>>(*loaded_, overrides, of_receivers)
+                                     : joined<ReceiverNoise>(*loaded_, overrides, of_receivers);
     add_new(warnings_, of_receivers);
-    return survey;
+    return joined_survey;
   }
 
   std::shared_ptr<const LoadedRepetition> loaded_;
   std::vector<std::string> warnings_;
-  AnySurvey survey_;
+  JoinedSurvey joined_;
 };
 
 }  // namespace detail

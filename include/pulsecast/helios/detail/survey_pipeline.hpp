@@ -7,6 +7,7 @@
 
 #include <pulsecast/detector/full_waveform.hpp>
 #include <pulsecast/detector/gaussian_fit.hpp>
+#include <pulsecast/scanner/footprint.hpp>
 #include <pulsecast/transport/direct_light.hpp>
 #include <pulsecast/transport/light_paths.hpp>
 
@@ -48,6 +49,15 @@ class SurveyDetector {
 
  private:
   std::variant<Plain, Fitting> detector_;
+};
+
+/// Rings of subrays, whose surveys judge surfaces if asked.
+struct SurveyFootprint : RingFootprint {
+  using refinements = refines<tag::JudgesSurfaces>;
+  bool judges = false;  ///< see `JudgesSurfaces`
+
+  SurveyFootprint(RingFootprint rings, bool judged) : RingFootprint(std::move(rings)), judges(judged) {}
+  [[nodiscard]] bool judges_surfaces() const noexcept { return judges; }
 };
 
 /// `DirectLight`, or `LightPaths` for a scene that asks for it.
