@@ -48,23 +48,31 @@ class SurveyUncertainty {
     if (!of) return u;
     const Vec3 beam = echo.range * shot.direction;
     if constexpr (StatesErrors<Source>)
-      survey_->source().visit_errors(shot.index, shot.tick, [&](const PoseError<frame::World>& error) noexcept {
-        const Vec3 arm = error.about ? (shot.origin - *error.about) + beam : beam;
-        (error.scope == ErrorScope::pulse ? u.random : u.systematic).add(error.moved + cross(error.turned, arm));
-      });
+      survey_->source().visit_errors(
+          shot.index, shot.tick, [&](const PoseError<frame::World>& error) __attribute__((always_inline)) {
+            Covariance& part = error.scope == ErrorScope::pulse ? u.random : u.systematic;
+            if (error.moved_any_way > 0) part.add(error.moved_any_way * error.moved_any_way);
+            const bool any_turn = error.turned_any_way > 0;
+            if (!any_turn && error.turned == Vec3{}) return part.add(error.moved);
+            const Vec3 arm = error.about ? (shot.origin - *error.about) + beam : beam;
+            if (!any_turn) return part.add(error.moved + cross(error.turned, arm));
+            const double square = error.turned_any_way * error.turned_any_way;
+            part.add(square * dot(arm, arm));
+            part.add(arm, -square);
+          });
     const RangeErrors& range = survey_->receivers()[of->emitter.receiver].receiver.range_errors;
     const double wide = of->deviation * beam_radius(of->emitter.laser, echo.range).x;
-    const double slope = std::sqrt(1 / (echo.cos_incidence * echo.cos_incidence) - 1);
-    const TimingErrors::Error timing = of->timing->of(echo.amplitude, wide * slope);
-    const double noise = range.noise_of(echo), bias = timing.bias;
-    u.random.add(std::hypot(noise, timing.deviation) * shot.direction);
-    const double along = u.total().along(shot.direction);
-    u.systematic.add(std::sqrt(range.systematic_variance(echo, shot.channel) + bias * bias) * shot.direction);
+    const double steep = 1 / (echo.cos_incidence * echo.cos_incidence) - 1;  // square of the slope
+    const TimingErrors::Error timing = of->timing->of(echo.amplitude, wide * std::sqrt(steep));
+    const double noise = range.noise_of(echo), bias = timing.bias * timing.bias;
+    u.random.add(shot.direction, noise * noise + timing.deviation * timing.deviation);
+    const bool biased = 25 * bias > u.random.along(shot.direction) + u.systematic.along(shot.direction);
+    u.systematic.add(shot.direction, range.systematic_variance(echo, shot.channel) + bias);
     if (options_.footprint) {
       u.random.add(wide * wide);
-      u.random.add(wide * shot.direction, slope * slope - 1);
+      u.random.add(wide * shot.direction, steep - 1);
     }
-    u.flags = flags_of(shot, echo, timing, 25 * bias * bias > along);
+    u.flags = flags_of(shot, echo, timing, biased);
     return u;
   }
 

@@ -24,15 +24,21 @@ template <class Frame>
 struct PoseError {
   Vec3 moved{};                          ///< translation [m]
   Vec3 turned{};                         ///< small rotation: axis times angle [rad]
-  std::optional<Vec3> about{};           ///< point that the rotation leaves in place [m]; empty: the exit of the beam
+  std::optional<Vec3> about{};           ///< point that rotations leave in place [m]; empty: the exit of the beam
   ErrorScope scope = ErrorScope::pulse;  ///< how long it stays the same
+  double moved_any_way = 0;              ///< independent translations along all axes, of this size; else 0 [m]
+  double turned_any_way = 0;             ///< independent rotations about all axes, of this size; else 0 [rad]
 };
 
 /// Error in the frame around its own.
 template <class Inner, class Outer>
 [[nodiscard]] PoseError<Outer> operator*(const Pose<Inner, Outer>& pose, const PoseError<Inner>& error) noexcept {
-  PoseError<Outer> out{pose.direction(error.moved), pose.direction(error.turned), {}, error.scope};
+  PoseError<Outer> out{pose.direction(error.moved)};
+  out.turned = pose.direction(error.turned);
   if (error.about) out.about = pose.point(*error.about);
+  out.scope = error.scope;
+  out.moved_any_way = error.moved_any_way;
+  out.turned_any_way = error.turned_any_way;
   return out;
 }
 
@@ -48,8 +54,10 @@ namespace detail {
 /// Error that displaces a body from one pose to another, as of a known size.
 template <class Body, class Frame>
 [[nodiscard]] PoseError<Frame> error_between(const Pose<Body, Frame>& from, const Pose<Body, Frame>& to) noexcept {
-  return {to.position - from.position, detail::turn_of(to.rotation * conjugate(from.rotation)), from.position,
-          ErrorScope::survey};
+  return {.moved = to.position - from.position,
+          .turned = detail::turn_of(to.rotation * conjugate(from.rotation)),
+          .about = from.position,
+          .scope = ErrorScope::survey};
 }
 
 /// Covariance of a vector: a symmetric matrix [m^2].

@@ -120,15 +120,22 @@ class WithPoseErrors {
   }
 
   template <class Visit>
-  void visit_errors(PulseIndex i, Tick t, const Visit& visit) const noexcept {
+  [[gnu::always_inline]] void visit_errors(PulseIndex i, Tick t, const Visit& visit) const noexcept {
     if constexpr (StatesErrors<Source>) truth_.visit_errors(i, t, visit);
     const Pose<frame::Body, frame::World> body = truth_.trajectory().at(t);
     const Pose<frame::Instrument, frame::Body> mount = truth_.mount().pose();
-    visit_axes(body, errors_.position_noise, errors_.attitude_noise, ErrorScope::pulse, visit);
-    visit_axes(body, errors_.position_drift, errors_.attitude_drift, ErrorScope::correlated, visit);
-    visit_axes(body, errors_.position_offset, errors_.attitude_offset, ErrorScope::leg, visit);
-    visit_axes(body, errors_.lever_arm_deviation, 0, ErrorScope::survey, visit);
-    visit_axes(body * mount, 0, errors_.boresight_deviation, ErrorScope::survey, visit);
+    const Pose<frame::Instrument, frame::World> instrument = body * mount;
+    const auto about_body = [&, axes = matrix_of(body.rotation)](
+                                const AxisDeviations& moved, const AxisDeviations& turned, ErrorScope scope) noexcept {
+      visit_axes(axes, body.position, moved, turned, scope, visit);
+    };
+    about_body(errors_.position_noise, errors_.attitude_noise, ErrorScope::pulse);
+    about_body(errors_.position_drift, errors_.attitude_drift, ErrorScope::correlated);
+    about_body(errors_.position_offset, errors_.attitude_offset, ErrorScope::leg);
+    about_body(errors_.lever_arm_deviation, 0, ErrorScope::survey);
+    if (!errors_.boresight_deviation.none())
+      visit_axes(matrix_of(instrument.rotation), instrument.position, 0, errors_.boresight_deviation,
+                 ErrorScope::survey, visit);
     if (errors_.lever_arm_error != Vec3{})
       visit(body * error_between(mount, {mount.rotation, mount.position + errors_.lever_arm_error}));
     if (errors_.boresight_error != no_rotation)
@@ -139,6 +146,7 @@ class WithPoseErrors {
   }
 
  private:
+  using Error = PoseError<frame::World>;
   struct Drift {
     Vec3 position{}, attitude{};
   };
@@ -149,34 +157,34 @@ class WithPoseErrors {
   }
   static Tick later(Tick t, double seconds) noexcept { return seconds == 0 ? t : t + Tick::of_seconds(seconds); }
 
-  /// Errors along the axes of a frame, and about those through its origin.
-  template <class Frame>
-  static void visit_axes(const Pose<Frame, frame::World>& pose, const AxisDeviations& moved,
-                         const AxisDeviations& turned, ErrorScope scope, const auto& visit) noexcept {
-    const auto each = [](const AxisDeviations& of, const auto& use) noexcept {
-      if (of.x > 0) use(Vec3{of.x, 0, 0});
-      if (of.y > 0) use(Vec3{0, of.y, 0});
-      if (of.z > 0) use(Vec3{0, 0, of.z});
-    };
-    each(moved, [&](const Vec3& error) noexcept { visit(pose * PoseError<Frame>{error, {}, {}, scope}); });
-    each(turned, [&](const Vec3& error) noexcept { visit(pose * PoseError<Frame>{{}, error, Vec3{}, scope}); });
+  /// Errors along axes of a frame in the world, and about those through a point. Inlined: most parts are constant
+  /// zeros.
+  [[gnu::always_inline]] static void visit_axes(const Matrix3& axes, const Vec3& origin, const AxisDeviations& moved,
+                                                const AxisDeviations& turned, ErrorScope scope,
+                                                const auto& visit) noexcept {
+    if (moved.x == moved.y && moved.y == moved.z) {
+      if (moved.x > 0) visit(Error{.scope = scope, .moved_any_way = moved.x});
+    } else {
+      visit(Error{.moved = moved.x * axes[0], .scope = scope});
+      visit(Error{.moved = moved.y * axes[1], .scope = scope});
+      visit(Error{.moved = moved.z * axes[2], .scope = scope});
+    }
+    if (turned.x == turned.y && turned.y == turned.z) {
+      if (turned.x > 0) visit(Error{.about = origin, .scope = scope, .turned_any_way = turned.x});
+    } else {
+      visit(Error{.turned = turned.x * axes[0], .about = origin, .scope = scope});
+      visit(Error{.turned = turned.y * axes[1], .about = origin, .scope = scope});
+      visit(Error{.turned = turned.z * axes[2], .about = origin, .scope = scope});
+    }
   }
 
   void visit_jitter(PulseIndex i, const auto& visit) const noexcept {
     const auto [about_x, unused, about_z] = errors_.angular_jitter;
-    if (about_x == 0 && about_z == 0) return;
-    const auto turn = [&](const Vec3& error) noexcept {
-      visit(PoseError<frame::World>{{}, error, {}, ErrorScope::pulse});
-    };
-    if (about_x == about_z) {  // alike about any axis, and that of the beam is without effect
-      for (int k = 0; k < 3; ++k) {
-        Vec3 error{};
-        error[k] = about_x;
-        turn(error);
-      }
+    if (about_x == about_z) {  // that about the axis of the beam is without effect
+      if (about_x > 0) visit(Error{.turned_any_way = about_x});
     } else if (const auto p = truth_.pulse(i)) {
-      turn(p->pose.direction({about_x, 0, 0}));
-      turn(p->pose.direction({0, 0, about_z}));
+      visit(Error{.turned = p->pose.direction({about_x, 0, 0})});
+      visit(Error{.turned = p->pose.direction({0, 0, about_z})});
     }
   }
 

@@ -187,12 +187,12 @@ class SurveyLeg {
   template <class Visit>
   void visit_errors(PulseIndex i, Tick t, const Visit& visit) const noexcept {
     truth_.visit_errors(i, t, visit);
-    for (const auto& [error, scope] : positions_) visit(PoseError<frame::World>{error, {}, {}, scope});
+    for (const auto& [error, scope] : positions_) visit(PoseError<frame::World>{.moved = error, .scope = scope});
     if (mount_error_) visit(error_between(path().at(t), path().at(t) * *mount_error_));
     if (attitudes_.empty()) return;
     if (const auto p = truth_.pulse(i))
       for (const auto& [error, scope] : attitudes_)
-        visit(PoseError<frame::World>{{}, p->pose.direction(error), {}, scope});
+        visit(PoseError<frame::World>{.turned = p->pose.direction(error), .scope = scope});
   }
 
   [[nodiscard]] const SurveyPath& path() const noexcept { return truth_.trajectory(); }
