@@ -221,7 +221,7 @@ const std::vector<PoseErrors> each_kind{{.position_noise = {0.02, 0.03, 0.01}},
                                         {.attitude_offset = {3e-4, 1e-4, 2e-4}},
                                         {.lever_arm_deviation = {0.02, 0.01, 0.03}},
                                         {.boresight_deviation = {1e-4, 3e-4, 2e-4}},
-                                        {.latency_deviation = 1e-3}};
+                                        {.latency_deviation = 2e-3}};  // over a change of sign
 
 }  // namespace
 
