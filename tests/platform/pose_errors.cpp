@@ -10,6 +10,7 @@
 #include <pulsecast/base/units.hpp>
 #include <pulsecast/deflector/deflector.hpp>
 #include <pulsecast/deflector/polygon_mirror.hpp>
+#include <pulsecast/detector/radiometry.hpp>
 #include <pulsecast/platform/legs.hpp>
 #include <pulsecast/scanner/any_source.hpp>
 #include <pulsecast/scanner/scanner.hpp>
@@ -280,5 +281,25 @@ TEST_CASE("an error of each kind stays the same for as long as is stated") {
     CHECK(size > 0);
     CHECK((change > 0.2 * size) == (scope == ErrorScope::pulse));
     CHECK((anew > 0.05 * size) == (scope != ErrorScope::survey));
+  }
+}
+
+TEST_CASE("what is drawn once of poses and of ranges is independent, even of one seed") {
+  const RangeErrors ranges{.bias_deviation = 1, .scale_deviation = 0.1};
+  constexpr int seeds = 400;
+  for (std::uint32_t receiver = 0; receiver < 3; ++receiver) {
+    Vec3 by_bias{}, by_scale{};
+    for (std::uint64_t seed = 0; seed < seeds; ++seed) {
+      const WithPoseErrors platform{
+          airplane(10), {.seed = seed, .position_offset = 1, .attitude_offset = 1e-3, .lever_arm_deviation = 1}};
+      const auto body = platform.truth().trajectory().at({}), reported = platform.reported({});
+      const RangeErrors drawn = ranges.drawn(seed, receiver);
+      by_bias += drawn.bias * body.inverse().direction(reported.position - body.position);
+      const Rotation turned = conjugate(body.rotation) * reported.rotation;
+      by_scale += drawn.scale * 10.0 * Vec3{turned.x, turned.y, turned.z} * 2e3;
+    }
+    CAPTURE(receiver);
+    CHECK(max_norm(by_bias) < 4 * std::sqrt(seeds));
+    CHECK(max_norm(by_scale) < 4 * std::sqrt(seeds));
   }
 }
