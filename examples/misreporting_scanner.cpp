@@ -14,6 +14,7 @@
 #include <vector>
 
 #include <pulsecast/pulsecast.hpp>
+#include <pulsecast/uncertainty.hpp>
 
 #include "misaligned_scanner.hpp"
 
@@ -64,6 +65,7 @@ int main() {
   // mirror and head turn once around, so that every place is seen in both faces
   const Deflector scanner{RotatingHead{.angular_rate = 360_deg / unit.duration().seconds()}, unit};
   const Survey survey{Platform{Tripod{}, Mount{}, scanner}, SingleRay{}, boards, Receiver{}, FirstHit{}};
+  const UncertaintyQuery uncertainty = uncertainty_of(survey);
   std::vector<std::array<Face, 2>> faces(places.size());
   std::vector<Covariance> stated(places.size());  // of the last point
   run(survey, {}, [&](const EchoBatch& batch) {
@@ -73,10 +75,7 @@ int main() {
         Face& face = faces[echo.object][unit.zenith(shot.tick) < pi ? 0 : 1];
         face.error += point_of(shot, echo) - truth.pose.point({0, echo.range, 0});
         ++face.points;
-        stated[echo.object] = {};
-        survey.source().visit_errors(shot.index, shot.tick, [&](const PoseError<frame::World>& error) noexcept {
-          stated[echo.object].add(error.moved + cross(error.turned, echo.range * truth.direction()));
-        });
+        stated[echo.object] = uncertainty(shot, echo).systematic;
       }
   });
 
