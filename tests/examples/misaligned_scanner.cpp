@@ -7,20 +7,19 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include <pulsecast/base/units.hpp>
-#include <pulsecast/deflector/deflector.hpp>
-#include <pulsecast/deflector/rotating_head.hpp>
-#include <pulsecast/platform/platform.hpp>
-#include <pulsecast/platform/tripod.hpp>
+#include <pulsecast/pulsecast.hpp>
+#include <pulsecast/uncertainty.hpp>
 
 #include <doctest/doctest.h>
 
 #include "support/generators.hpp"
 #include "support/laws.hpp"
+#include "support/relative.hpp"
 
 using namespace pulsecast;
 using namespace pulsecast::literals;
@@ -146,6 +145,19 @@ std::vector<Vec3> targets() {
   return places;
 }
 
+/// Scanner on a tilted tripod, with misalignments of so many times the typical ones.
+auto scanner(double size, std::uint64_t seed) {
+  Parameters deviations = typical;
+  for (double& d : deviations) d *= size;
+  const MirrorUnit unit{.scanner = {.pulse_rate = 1_kHz, .pulses = 2000},
+                        .rotation_rate = 7,
+                        .misalignments = drawn(deviations, seed),
+                        .deviations = deviations};
+  const Mount mount{.lever_arm = {0, 0, 1.7}, .boresight = rotation_about({1, 2, 3}, 0.1)};
+  return Platform{Tripod{.position = {10, 20, 30}, .heading = 1}, mount,
+                  Deflector{RotatingHead{.angular_rate = pi}, unit}};
+}
+
 /// Mean and variance of normalised errors.
 struct Normalised {
   double sum = 0, squares = 0;
@@ -210,17 +222,6 @@ TEST_CASE("in spherical coordinates the forms are those of the paper, in both fa
 }
 
 TEST_CASE("the errors that the scanner states, each times its draw, sum to what it misreports") {
-  const auto scanner = [](double size, std::uint64_t seed) {
-    Parameters deviations = typical;
-    for (double& d : deviations) d *= size;
-    const MirrorUnit unit{.scanner = {.pulse_rate = 1_kHz, .pulses = 2000},
-                          .rotation_rate = 7,
-                          .misalignments = drawn(deviations, seed),
-                          .deviations = deviations};
-    const Mount mount{.lever_arm = {0, 0, 1.7}, .boresight = rotation_about({1, 2, 3}, 0.1)};
-    return Platform{Tripod{.position = {10, 20, 30}, .heading = 1}, mount,
-                    Deflector{RotatingHead{.angular_rate = pi}, unit}};
-  };
   const auto residual = [&](double size, std::uint64_t seed) {
     const auto platform = scanner(size, seed);
     Parameters ones{};
@@ -248,6 +249,36 @@ TEST_CASE("the errors that the scanner states, each times its draw, sum to what 
     CHECK(residual(1, seed) < 200 * residual(0.1, seed));
   }
   CHECK(support::source_laws(scanner(1, 1)) == "");
+}
+
+TEST_CASE("points of a survey are as uncertain as its scanners err") {
+  for (const PulseIndex i : {PulseIndex{3}, PulseIndex{40}, PulseIndex{777}, PulseIndex{1500}}) {
+    CAPTURE(i);
+    CHECK(support::error_laws([](std::uint64_t seed) { return scanner(1, seed); }, i, 10, 1000) == "");
+  }
+  const MeshData ground{.vertices = {{-90, -90, 0}, {110, -90, 0}, {110, 110, 0}, {-90, 110, 0}},
+                        .triangles = {{0, 1, 2}, {0, 2, 3}}};
+  const Scene<TriangleMesh<>> scene({{.geometry = std::make_shared<const TriangleMesh<>>(ground)}});
+  const Survey survey{scanner(1, 1), SingleRay{}, scene, Receiver{}, FirstHit{}};
+  const UncertaintyQuery uncertainty = uncertainty_of(survey);
+  std::size_t points = 0;
+  run(survey, {}, [&](const EchoBatch& batch) {
+    for (const Shot& shot : batch.shots)
+      for (const Echo& echo : batch.echoes_of(shot)) {
+        const auto pulse = survey.source().pulse(shot.index);
+        const Vec3 point = pulse->pose.point({0, echo.range, 0});
+        Covariance stated;
+        survey.source().visit_errors(shot.index, shot.tick, [&](const PoseError<frame::World>& error) noexcept {
+          stated.add(support::detail::displaced(error, *pulse, point));
+        });
+        const PointUncertainty u = uncertainty(shot, echo);
+        CHECK(u.flags == 0);
+        for (const Vec3& along : {axis::right, axis::forward, axis::up, normalize(Vec3{1, -2, 3})})
+          CHECK(u.systematic.along(along) == support::relative(stated.along(along), 0.01));
+        ++points;
+      }
+  });
+  CHECK(points > 500);
 }
 
 TEST_CASE("places that are known show all ten parameters, as exactly as least squares state") {
