@@ -8,11 +8,14 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include <pulsecast/platform/pose_errors.hpp>
 #include <pulsecast/pulsecast.hpp>
+#include <pulsecast/scanner/any_source.hpp>
 #include <pulsecast/uncertainty.hpp>
 
 #include <doctest/doctest.h>
@@ -158,6 +161,18 @@ auto scanner(double size, std::uint64_t seed) {
                   Deflector{RotatingHead{.angular_rate = pi}, unit}};
 }
 
+/// Mirror unit that says nothing of its errors.
+struct Silent {
+  MirrorUnit unit;
+  PulseIndex size() const noexcept { return unit.size(); }
+  Tick duration() const noexcept { return unit.duration(); }
+  std::vector<Emitter> emitters() const { return unit.emitters(); }
+  std::optional<Pulse<frame::Instrument>> pulse(PulseIndex i) const noexcept { return unit.pulse(i); }
+  std::optional<Pose<frame::Beam, frame::Instrument>> measured(PulseIndex i, Tick t) const noexcept {
+    return unit.measured(i, t);
+  }
+};
+
 /// Mean and variance of normalised errors.
 struct Normalised {
   double sum = 0, squares = 0;
@@ -279,6 +294,25 @@ TEST_CASE("points of a survey are as uncertain as its scanners err") {
       }
   });
   CHECK(points > 500);
+}
+
+TEST_CASE("points of a scanner that does not state what it misreports are marked, whatever is around it") {
+  const MeshData ground{.vertices = {{-90, -90, 0}, {110, -90, 0}, {110, 110, 0}, {-90, 110, 0}},
+                        .triangles = {{0, 1, 2}, {0, 2, 3}}};
+  const Scene<TriangleMesh<>> scene({{.geometry = std::make_shared<const TriangleMesh<>>(ground)}});
+  const auto flags_of = [&](const auto& source) {
+    const Survey survey{source, SingleRay{}, scene, Receiver{}, FirstHit{}};
+    return uncertainty_of(survey)({}, {.range = 1, .cos_incidence = 1}).flags & PointUncertainty::unstated;
+  };
+  const auto around = [](const auto& unit) { return Platform{Tripod{}, Mount{}, Deflector{RotatingHead{}, unit}}; };
+  const MirrorUnit unit{.scanner = {.pulses = 10}, .deviations = typical};
+  using Any = AnySource<Deflector<FixedBeam, Scanner>, Silent>;
+  CHECK(flags_of(around(unit)) == 0);
+  CHECK(flags_of(around(Deflector{FixedBeam{}, unit.scanner})) == 0);
+  CHECK(flags_of(around(Silent{unit})) != 0);
+  CHECK(flags_of(around(Channels{std::vector<Any>{Silent{unit}}})) != 0);
+  CHECK(flags_of(Legs{std::vector{WithPoseErrors{around(Silent{unit}), PoseErrors{.position_noise = 1}}}}) != 0);
+  CHECK(flags_of(Legs{std::vector{WithPoseErrors{around(unit), PoseErrors{.position_noise = 1}}}}) == 0);
 }
 
 TEST_CASE("places that are known show all ten parameters, as exactly as least squares state") {
