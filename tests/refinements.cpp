@@ -2,11 +2,14 @@
 // SPDX-License-Identifier: MIT
 #include <pulsecast/refinements.hpp>
 
+#include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include <pulsecast/base/lanes.hpp>
@@ -62,6 +65,10 @@ MISSPELT(FindsSlots, throwing, PulseIndex slot_from(Tick) const);
 MISSPELT(SkipsBlocked, changing, PulseIndex next_pulse(PulseIndex) noexcept);
 MISSPELT(DrawsByLeg, nothing, void draw_for_leg());
 MISSPELT(MeasuresBeam, always, Pose<frame::Beam, frame::Instrument> measured(PulseIndex, Tick) const noexcept);
+MISSPELT(StatesErrors, throwing, std::optional<Pulse<frame::World>> pulse(PulseIndex) const noexcept;
+         void visit_errors(PulseIndex, Tick, const auto&) const);
+MISSPELT(StatesErrors, frame, std::optional<Pulse<frame::Instrument>> pulse(PulseIndex) const noexcept;
+         void visit_errors(PulseIndex, Tick, void (*)(const PoseError<frame::World>&)) const noexcept);
 MISSPELT(PrefetchesPrimitives, index, void prefetch(const PrimitiveIndex*) const noexcept);
 MISSPELT(MissesCones, throwing, bool misses_cone(const RayCone&) const);
 MISSPELT(VisitsMaterials, argument, void visit_materials(int) const);
@@ -136,6 +143,58 @@ struct Constants : LeastGeometry, LeastFootprint, LeastDetector {
                         rotates_per_pulse = value, runs_without_reflections = value, reads_velocity = value;
 };
 
+/// Instrument that reports each beam moved, and turned about a point beside it: by draws of two errors, which it
+/// states.
+struct Shaking {
+  using refinements = refines<tag::MeasuresBeam, tag::StatesErrors>;
+  double number = 0;                                  ///< tells instruments apart
+  Scanner scanner{.pulse_rate = 1000, .pulses = 50};  ///< laser
+  static constexpr double draws[] = {0.7, -1.3};
+
+  std::array<PoseError<frame::Instrument>, 2> errors(PulseIndex i, Tick t) const noexcept {
+    const double at = static_cast<double>(i) + number, x = std::sin(at), y = std::cos(at + 40 * t.seconds());
+    return {PoseError<frame::Instrument>{1e-6 * Vec3{x, y, x * y}, {}, {}, ErrorScope::leg},
+            {{}, 1e-7 * Vec3{y, 1, x}, Vec3{1 + x, 2, y}, ErrorScope::pulse}};
+  }
+  PulseIndex size() const noexcept { return scanner.size(); }
+  Tick duration() const noexcept { return scanner.duration(); }
+  std::vector<Emitter> emitters() const { return scanner.emitters(); }
+  std::optional<Pulse<frame::Instrument>> pulse(PulseIndex i) const noexcept {
+    const Pose<frame::Beam, frame::Instrument> aim{rotation_about({1, 2, 3}, static_cast<double>(i)), {0.1, 0.2, 0.3}};
+    return Pulse<frame::Instrument>(aim, *scanner.pulse(i));
+  }
+  std::optional<Pose<frame::Beam, frame::Instrument>> measured(PulseIndex i, Tick t) const noexcept {
+    const auto [move, turn] = errors(i, t);
+    const auto truth = pulse(i)->pose;
+    const Vec3 turned = draws[1] * turn.turned;
+    const Rotation by = rotation_about(turned, length(turned));
+    return Pose<frame::Beam, frame::Instrument>{
+        by * truth.rotation, by * (truth.position - *turn.about) + *turn.about + draws[0] * move.moved};
+  }
+  void visit_errors(PulseIndex i, Tick t, const auto& visit) const noexcept {
+    for (const auto& error : errors(i, t)) visit(error);
+  }
+};
+
+/// Names a pulse whose misreported point is not the sum of the stated errors times their draws.
+template <class Source>
+std::string misstated(const Source& source) {
+  static_assert(StatesErrors<Source>);
+  for (PulseIndex i = 0; i < source.size(); ++i) {
+    const auto p = source.pulse(i);
+    const Vec3 ray{0, 20, 0}, point = p->pose.point(ray);
+    Vec3 rest = p->reported->point(ray) - point;
+    std::size_t k = 0;
+    source.visit_errors(i, p->tick, [&](const PoseError<frame::World>& error) noexcept {
+      if (k < 2 && error.scope == (k == 0 ? ErrorScope::leg : ErrorScope::pulse))
+        rest -= Shaking::draws[k] * support::detail::displaced(error, *p, point);
+      ++k;
+    });
+    if (k != 2 || !(length(rest) < 1e-10)) return "pulse " + std::to_string(i);
+  }
+  return {};
+}
+
 }  // namespace
 
 TEST_CASE("members of near names are the user's own") {
@@ -146,6 +205,33 @@ TEST_CASE("members of near names are the user's own") {
   CHECK(run(survey, {}, OwnSink{}).pulses() == 10);
   CHECK(survey.sample_interval() == 0);
   CHECK(scene.misses_cone({}));
+}
+
+TEST_CASE("every stage passes on the errors that an instrument states, as it does its measured beam") {
+  const auto on_tripod = [](auto source) {
+    return Platform{Tripod{.position = {1, 2, 3}, .heading = 0.5},
+                    Mount{.lever_arm = {0.3, 0.2, 0.1}, .boresight = rotation_about({3, 1, 2}, 1)}, source};
+  };
+  const Deflector turning{RotatingHead{.angular_rate = 30, .axis = {1, 1, 2}}, Shaking{}};
+  CHECK(misstated(on_tripod(Shaking{})) == "");
+  CHECK(misstated(on_tripod(turning)) == "");
+  CHECK(misstated(on_tripod(Channels{std::vector{Shaking{1}, Shaking{2}, Shaking{3}}})) == "");
+  CHECK(misstated(Legs{std::vector{on_tripod(Shaking{1}), on_tripod(Shaking{2})}}) == "");
+  CHECK(misstated(WithPoseErrors{on_tripod(turning), PoseErrors{}}) == "");
+
+  using Any = AnySource<Shaking, Deflector<RotatingHead, Shaking>>;
+  static_assert(StatesErrors<Any>);
+  const Channels channels{std::vector<Any>{Shaking{1}, turning}};
+  CHECK(misstated(on_tripod(channels)) == "");
+  const WithPoseErrors tripod{on_tripod(Deflector{RotatingHead{}, channels}), PoseErrors{}};
+  const Legs legs{std::vector{tripod, tripod}};
+  CHECK(misstated(legs) == "");
+  CHECK(misstated(AnySource<std::decay_t<decltype(tripod)>, std::decay_t<decltype(legs)>>{legs}) == "");
+
+  static_assert(!StatesErrors<decltype(on_tripod(Deflector{FixedBeam{}, Scanner{}}))>);
+  using Exact = Deflector<FixedBeam, Scanner>;
+  const AnySource<Shaking, Exact> exact{Exact{FixedBeam{}, Scanner{}}};
+  exact.visit_errors(0, {}, [](const auto&) noexcept { CHECK_MESSAGE(false, "a source without errors states one"); });
 }
 
 TEST_CASE("every stage passes over blocked slots, and over no other") {

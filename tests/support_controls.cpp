@@ -292,6 +292,27 @@ std::string broken_by(Change change) {
   return sink.broken();
 }
 
+/// Reports its pulses elsewhere, by offsets along the axes, and states some deviations.
+struct Offset : LeastSource<frame::World> {
+  std::uint64_t seed;
+  Vec3 deviations, stated;
+  Offset(std::uint64_t s, const Vec3& d, const Vec3& of) : seed(s), deviations(d), stated(of) {}
+  std::optional<Pulse<frame::World>> pulse(PulseIndex i) const noexcept {
+    auto p = LeastSource::pulse(i);
+    p->reported = p->pose;
+    for (int k = 0; k < 3; ++k)
+      p->reported->position[k] += deviations[k] * normal({seed, 0, static_cast<std::uint32_t>(k)});
+    return p;
+  }
+  void visit_errors(PulseIndex, Tick, const auto& visit) const noexcept {
+    for (int k = 0; k < 3; ++k) {
+      PoseError<frame::World> error;
+      error.moved[k] = stated[k];
+      visit(error);
+    }
+  }
+};
+
 }  // namespace
 
 TEST_CASE("SHA-256 gives the known answers of FIPS 180-4") {
@@ -416,6 +437,18 @@ TEST_CASE("sources that keep the law pass, and those that break it do not") {
   CHECK(names(source_laws(MakesNone{}), "0 are made"));
   CHECK(names(source_laws(Skips{+2}), "is skipped"));
   CHECK(names(source_laws(Skips{-1}), "the next pulse after 0 is"));
+}
+
+TEST_CASE("sources that state their errors pass, and those that state others do not") {
+  const auto offset_by = [](const Vec3& deviations, const Vec3& stated) {
+    return [=](std::uint64_t seed) { return Offset{seed, deviations, stated}; };
+  };
+  CHECK(error_laws(offset_by({1, 2, 3}, {1, 2, 3}), 1, 10) == "");
+  CHECK(error_laws(offset_by({}, {}), 1, 10) == "");
+  CHECK(names(error_laws(offset_by({1, 2, 3}, {1, 2, 3.5}), 1, 10), "the variance is"));
+  CHECK(names(error_laws(offset_by({1, 2, 3}, {1, 3, 2}), 1, 10), "the variance is"));
+  CHECK(names(error_laws(offset_by({1, 2, 3}, {}), 1, 10), "the variance is inf"));
+  CHECK(names(error_laws(offset_by({}, {1, 1, 1}), 1, 10), "the variance is 0"));
 }
 
 TEST_CASE("wrappers that keep the law pass, and those that break it do not") {

@@ -19,6 +19,14 @@ struct UncertaintyOptions {
 
 namespace detail {
 
+template <class Source>
+inline constexpr bool states_own = !MeasuresBeam<Source> || StatesErrors<Source>;
+/// True of a source without an instrument that measures its beam with errors that it does not state.
+template <class Source>
+inline constexpr bool states_all = states_own<Source>;
+template <template <class...> class Wrapper, class... Parts>
+inline constexpr bool states_all<Wrapper<Parts...>> = (states_own<Wrapper<Parts...>> && ... && states_all<Parts>);
+
 /// Uncertainty of the echoes of a survey.
 template <class Survey>
 class SurveyUncertainty {
@@ -107,7 +115,7 @@ class SurveyUncertainty {
     if (timing.weak) flags |= PointUncertainty::weak;
     if (echo.kind != ReflectionKind::surface) flags |= PointUncertainty::indirect;
     if (biased || timing.beyond) flags |= PointUncertainty::biased;
-    if constexpr (MeasuresBeam<Source> && !StatesErrors<Source>) flags |= PointUncertainty::unstated;
+    if (!states_all<Source>) flags |= PointUncertainty::unstated;
     return static_cast<std::uint8_t>(flags);
   }
 

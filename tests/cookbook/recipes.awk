@@ -2,8 +2,10 @@
 # SPDX-License-Identifier: MIT
 
 # Turns docs/cookbook.md into a test program. The first block of C++ is common to all recipes; each further block is a test case, named by
-# its heading, with at most 15 lines, in the chapter of extensions 12. The expression in a comment `<!-- check: ... -->` after a block must be true at its end.
+# its heading, with at most 15 lines, in the chapter of extensions 12. A struct with a member template stands before its test case. The expression in a comment `<!-- check: ... -->` after a block must be true at its end.
 function finish() {
+  cases = cases hoisted
+  hoisted = ""
   if (body != "") cases = cases "\nTEST_CASE(\"" heading "\") {\n  const support::Kitchen kitchen;\n" body "}\n"
   body = ""
 }
@@ -21,6 +23,17 @@ function finish() {
 }
 inside && /^#include / { includes = includes $0 "\n"; if (blocks > 1) body = body "\n"; next }
 inside && blocks == 1 { common = common $0 "\n"; next }
+inside && /^struct / { held = "#line " FNR " \"" FILENAME "\"\n"; blank = "" }
+inside && held != "" {
+  held = held $0 "\n"
+  blank = blank "\n"
+  if ($0 != "") ++lines
+  if (/^};$/ || /^struct .*};$/) {
+    if (held ~ /auto& [a-z]+\) const noexcept/) { hoisted = hoisted "\n" held; body = body blank } else body = body substr(held, index(held, "\n") + 1)
+    held = ""
+  }
+  next
+}
 inside { body = body $0 "\n"; if ($0 != "") ++lines; next }
 /^<!-- check: .* -->$/ {
   sub(/^<!-- check: /, ""); sub(/ -->$/, "")

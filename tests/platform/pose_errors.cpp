@@ -10,6 +10,7 @@
 #include <pulsecast/base/units.hpp>
 #include <pulsecast/deflector/deflector.hpp>
 #include <pulsecast/deflector/polygon_mirror.hpp>
+#include <pulsecast/detector/radiometry.hpp>
 #include <pulsecast/platform/legs.hpp>
 #include <pulsecast/scanner/any_source.hpp>
 #include <pulsecast/scanner/scanner.hpp>
@@ -190,4 +191,115 @@ TEST_CASE("errors that cannot be are refused") {
   CHECK_THROWS_AS((WithPoseErrors{airplane(), {.lever_arm_error = {nan, 0, 0}}}), SettingError);
   CHECK_THROWS_AS((WithPoseErrors{airplane(), {.boresight_error = {2, 0, 0, 0}}}), SettingError);
   CHECK_THROWS_AS((WithPoseErrors{airplane(2'000'000), {.position_drift = 1, .drift_time = 1e-9}}), SettingError);
+}
+
+namespace {
+
+/// A curve to the left at 50 m/s, banked. The signs of its rotations alternate.
+struct Curve {
+  Pose<frame::Body, frame::World> at(Tick t) const noexcept {
+    const double angle = 0.2 * t.seconds(), sign = t.phase(50) < 0.5 ? 1 : -1;
+    const Rotation attitude = rotation_about(axis::up, angle) * rotation_about(axis::forward, -0.4);
+    return {sign * attitude, {5e5 + 250 * std::cos(angle), 5e6 + 250 * std::sin(angle), 1000}};
+  }
+};
+
+auto in_curve(const PoseErrors& errors) {
+  return WithPoseErrors{
+      Platform{Curve{}, Mount{.lever_arm = {0.3, -1.2, 0.7}, .boresight = rotation_about({1, 2, 3}, 1.1)},
+               Deflector{PolygonMirror{.line_rate = 1_Hz}, Scanner{.pulse_rate = 1_kHz, .pulses = 1000}}},
+      errors};
+}
+
+/// Errors of one kind at a time, with different deviations by axis.
+const std::vector<PoseErrors> each_kind{{.position_noise = {0.02, 0.03, 0.01}},
+                                        {.attitude_noise = {1e-4, 2e-4, 0}},
+                                        {.position_drift = {0.05, 0.01, 0.02}, .drift_time = 0.7},
+                                        {.attitude_drift = {2e-4, 0, 5e-4}, .drift_time = 0.7},
+                                        {.angular_jitter = 2e-4},
+                                        {.angular_jitter = {1e-4, 0, 3e-4}},
+                                        {.position_offset = {0.01, 0.02, 0.03}},
+                                        {.attitude_offset = {3e-4, 1e-4, 2e-4}},
+                                        {.lever_arm_deviation = {0.02, 0.01, 0.03}},
+                                        {.boresight_deviation = {1e-4, 3e-4, 2e-4}},
+                                        {.latency_deviation = 2e-3}};  // over a change of sign
+
+}  // namespace
+
+TEST_CASE("points err as a platform states of each kind of error, and of all together") {
+  const auto with_seed = [](const PoseErrors& errors) {
+    return [errors](std::uint64_t seed) {
+      PoseErrors seeded = errors;
+      seeded.seed = seed;
+      return in_curve(seeded);
+    };
+  };
+  for (std::size_t kind = 0; kind < each_kind.size(); ++kind) {
+    CAPTURE(kind);
+    CHECK(support::error_laws(with_seed(each_kind[kind]), 129 + 70 * kind, 300) == "");
+  }
+  PoseErrors every = each_kind[0];
+  every.attitude_drift = each_kind[3].attitude_drift;
+  every.angular_jitter = each_kind[5].angular_jitter;
+  every.attitude_offset = each_kind[7].attitude_offset;
+  every.boresight_deviation = each_kind[9].boresight_deviation;
+  every.latency_deviation = 1e-3;
+  CHECK(support::error_laws(with_seed(every), 600, 300) == "");
+}
+
+TEST_CASE("errors of a known size are stated with their sign") {
+  const WithPoseErrors platform =
+      in_curve({.lever_arm_error = {0.01, -0.02, 0.03}, .boresight_error = -rotation_about({3, 1, 2}, 1e-5)});
+  for (PulseIndex i = 0; i < platform.size(); i += 37) {
+    const auto p = platform.pulse(i);
+    const Vec3 ray{0, 300, 0}, point = p->pose.point(ray);
+    Vec3 rest = p->reported->point(ray) - point;
+    int stated = 0;
+    platform.visit_errors(i, p->tick, [&](const PoseError<frame::World>& error) noexcept {
+      rest -= support::detail::displaced(error, *p, point);
+      stated += error.scope == ErrorScope::survey;
+    });
+    CHECK(stated == 2);
+    CHECK(length(rest) < 5e-8);  // of 38 mm
+  }
+}
+
+TEST_CASE("an error of each kind stays the same for as long as is stated") {
+  for (std::size_t kind = 0; kind < each_kind.size(); ++kind) {
+    CAPTURE(kind);
+    PoseErrors errors = each_kind[kind];
+    errors.seed = 5;
+    const auto strip = in_curve(errors);
+    const Legs legs{std::vector{strip, strip}};
+    const auto off = [&](PulseIndex i) {
+      const auto p = legs.pulse(i);
+      return p->reported->point({0, 300, 0}) - p->pose.point({0, 300, 0});
+    };
+    ErrorScope scope{};
+    legs.visit_errors(0, legs.pulse(0)->tick, [&](const auto& error) noexcept { scope = error.scope; });
+    const double size = length(off(0)), change = length(off(1) - off(0)), anew = length(off(1000) - off(0));
+    CHECK(size > 0);
+    CHECK((change > 0.2 * size) == (scope == ErrorScope::pulse));
+    CHECK((anew > 0.05 * size) == (scope != ErrorScope::survey));
+  }
+}
+
+TEST_CASE("what is drawn once of poses and of ranges is independent, even of one seed") {
+  const RangeErrors ranges{.bias_deviation = 1, .scale_deviation = 0.1};
+  constexpr int seeds = 400;
+  for (std::uint32_t receiver = 0; receiver < 3; ++receiver) {
+    Vec3 by_bias{}, by_scale{};
+    for (std::uint64_t seed = 0; seed < seeds; ++seed) {
+      const WithPoseErrors platform{
+          airplane(10), {.seed = seed, .position_offset = 1, .attitude_offset = 1e-3, .lever_arm_deviation = 1}};
+      const auto body = platform.truth().trajectory().at({}), reported = platform.reported({});
+      const RangeErrors drawn = ranges.drawn(seed, receiver);
+      by_bias += drawn.bias * body.inverse().direction(reported.position - body.position);
+      const Rotation turned = conjugate(body.rotation) * reported.rotation;
+      by_scale += drawn.scale * 10.0 * Vec3{turned.x, turned.y, turned.z} * 2e3;
+    }
+    CAPTURE(receiver);
+    CHECK(max_norm(by_bias) < 4 * std::sqrt(seeds));
+    CHECK(max_norm(by_scale) < 4 * std::sqrt(seeds));
+  }
 }

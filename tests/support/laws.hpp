@@ -254,6 +254,41 @@ template <class S>
   return {};
 }
 
+namespace detail {
+/// Displacement of a point of a pulse by an error [m].
+inline Vec3 displaced(const PoseError<frame::World>& error, const Pulse<frame::World>& pulse, const Vec3& point) {
+  return error.moved + cross(error.turned, point - error.about.value_or(pulse.origin()));
+}
+}  // namespace detail
+
+/// Reported less true points of pulse i, at a range [m], have the covariance that the source states, over the seeds of
+/// its draws: along each of some directions to 5 standard deviations of such a mean. `make(seed)` gives the source.
+template <class Make>
+[[nodiscard]] std::string error_laws(const Make& make, PulseIndex i, double range, std::uint64_t seeds = 3000) {
+  Covariance found, stated;
+  for (std::uint64_t seed = 0; seed < seeds; ++seed) {
+    const auto source = make(seed);
+    const auto pulse = source.pulse(i);
+    if (!pulse) return "the pulse is blocked";
+    const Vec3 ray{0, range, 0}, point = pulse->pose.point(ray);
+    found.add(pulse->reported.value_or(pulse->pose).point(ray) - point);
+    source.visit_errors(i, pulse->tick, [&](const PoseError<frame::World>& error) noexcept {
+      stated.add(detail::displaced(error, *pulse, point));
+    });
+  }
+  const double share = 5 * std::sqrt(2 / static_cast<double>(seeds));
+  const double second_order = 1e-5 * (stated.xx + stated.yy + stated.zz);
+  Generator random(i);
+  for (int k = 0; k < 20; ++k) {
+    const Vec3 along = random.unit();
+    const double stated_here = stated.along(along), found_here = found.along(along);
+    if (!(std::fabs(found_here - stated_here) <= share * stated_here + second_order))
+      return detail::sentence("along (", along.x, ", ", along.y, ", ", along.z, ") the variance is ",
+                              found_here / stated_here, " times the stated one");
+  }
+  return {};
+}
+
 /// What wraps a source keeps its size, its duration, its ticks and its emitters, and opens no slot that is blocked
 /// inside.
 template <class Outer, class Inner>

@@ -46,8 +46,8 @@ namespace detail {
 /// Axis times angle of a rotation [rad].
 [[nodiscard]] inline Vec3 turn_of(const Rotation& r) noexcept {
   const Vec3 axis{r.x, r.y, r.z};
-  const double size = length(axis);
-  return size > 0 ? 2 * std::atan2(size, r.w) / size * axis : Vec3{};
+  const double size = length(axis), turn = r.w < 0 ? -2 : 2;  // a quaternion and its negative are one rotation
+  return size > 0 ? turn * std::atan2(size, std::fabs(r.w)) / size * axis : Vec3{};
 }
 }  // namespace detail
 

@@ -84,9 +84,9 @@ struct RangeErrors {
 
   /// The same errors, with the bias and scale that a survey of this seed draws added to theirs.
   [[nodiscard]] RangeErrors drawn(std::uint64_t seed, std::uint32_t receiver) const noexcept {
-    RangeErrors errors = *this;
-    errors.bias += bias_deviation * normal({seed, 0, receiver, Purpose::calibration});
-    errors.scale += scale_deviation * normal({seed, 1, receiver, Purpose::calibration});
+    RangeErrors errors = *this;  // `WithPoseErrors` draws numbers 0 to 4
+    errors.bias += bias_deviation * normal({seed, 5, receiver, Purpose::calibration});
+    errors.scale += scale_deviation * normal({seed, 6, receiver, Purpose::calibration});
     return errors;
   }
 
