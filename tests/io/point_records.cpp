@@ -316,3 +316,32 @@ TEST_CASE("settings out of range are refused") {
 
 }  // namespace
 }  // namespace pulsecast::io
+
+TEST_CASE("the covariance of a point turns with its axes, and is NaN where it is unknown") {
+  const PointUncertainty stated{.random = {.xx = 1, .yy = 2, .zz = 3}, .systematic = {.xx = 4, .xy = 5}, .flags = 2};
+  const Shot shot{.direction = axis::forward, .echoes = 1};
+  const Echo echo{.range = 10};
+  const EchoBatch batch{{&shot, 1}, {&echo, 1}};
+  const auto record_of = [&](const PointSettings& settings) {
+    const PointLayout layout =
+        PointLayout::packed(layouts::uncertainty()).with(layouts::columns({column("systematic_variance_y")}));
+    PointBuffer buffer(layout, settings);
+    buffer(batch);
+    std::vector<double> numbers;
+    for (const PointField& field : layout.fields) numbers.push_back(buffer.number(0, field));
+    return numbers;
+  };
+  PointSettings settings;
+  CHECK(record_of(settings).back() != record_of(settings).back());
+  CHECK(record_of(settings)[6] == 255);
+  settings.uncertainty = [&](const Shot&, const Echo&) { return stated; };
+  CHECK(record_of(settings) == std::vector<double>{5, 2, 3, 5, 0, 0, 2, 0});
+  settings.axes = PointAxes::forward_left_up;  // x is the former y, y the former -x
+  CHECK(record_of(settings) == std::vector<double>{2, 5, 3, -5, 0, 0, 2, 4});
+  settings.sensor = [](Tick) {
+    return Pose<frame::Instrument, frame::World>{rotation_about(axis::up, 90 * pi / 180), {}};
+  };
+  const std::vector<double> turned = record_of(settings);
+  CHECK(turned[0] == doctest::Approx(5));
+  CHECK(turned[3] == doctest::Approx(5));
+}

@@ -263,7 +263,7 @@ inline constexpr std::array point_columns = [] {
       covariance<&Covariance::xy, true>("systematic_covariance_xy"),
       covariance<&Covariance::xz, true>("systematic_covariance_xz"),
       covariance<&Covariance::yz, true>("systematic_covariance_yz"),
-      PointColumn{"uncertainty_flags", "", uint8, uncertainty_flags_of, "0: error as stated; 255: unknown",
+      PointColumn{"uncertainty_flags", "", uint8, uncertainty_flags_of, "0: error as stated; or 255",
                   PointNeed::uncertainty}};
 }();
 
