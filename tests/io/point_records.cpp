@@ -314,14 +314,11 @@ TEST_CASE("settings out of range are refused") {
                        doctest::Contains("PointSettings::start_time"), SettingError);
 }
 
-}  // namespace
-}  // namespace pulsecast::io
-
 TEST_CASE("the covariance of a point turns with its axes, and is NaN where it is unknown") {
   const PointUncertainty stated{.random = {.xx = 1, .yy = 2, .zz = 3}, .systematic = {.xx = 4, .xy = 5}, .flags = 2};
   const Shot shot{.direction = axis::forward, .echoes = 1};
   const Echo echo{.range = 10};
-  const EchoBatch batch{{&shot, 1}, {&echo, 1}};
+  const EchoBatch batch{.shots = {&shot, 1}, .echoes = {&echo, 1}, .samples = {}};
   const auto record_of = [&](const PointSettings& settings) {
     const PointLayout layout =
         PointLayout::packed(layouts::uncertainty()).with(layouts::columns({column("systematic_variance_y")}));
@@ -345,3 +342,6 @@ TEST_CASE("the covariance of a point turns with its axes, and is NaN where it is
   CHECK(turned[0] == doctest::Approx(5));
   CHECK(turned[3] == doctest::Approx(5));
 }
+
+}  // namespace
+}  // namespace pulsecast::io
