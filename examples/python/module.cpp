@@ -172,8 +172,8 @@ std::unique_ptr<RaycastingScene> with_meshes(const RaycastingScene& scene, const
 std::unique_ptr<Simulation> simulation_of(py::handle survey, Paths assets, std::vector<Simulation::Mesh> meshes,
                                           std::optional<std::uint64_t> seed, bool echo_width, bool waveforms,
                                           bool waveform_noise, bool fixed_incidence, bool library_physics,
-                                          bool light_paths, bool platform_noise, bool leg_noise, unsigned threads,
-                                          int run) {
+                                          bool light_paths, bool uncertainty, bool platform_noise, bool leg_noise,
+                                          unsigned threads, int run) {
   const helios::SurveySettings settings = survey_of(survey);
   require_within("Simulation repetition", run, 0, std::numeric_limits<int>::max(), "");
   for (std::filesystem::path& folder : py::module_::import("pulsecast").attr("asset_folders")().cast<Paths>())
@@ -187,6 +187,7 @@ std::unique_ptr<Simulation> simulation_of(py::handle survey, Paths assets, std::
                                  .waveforms = waveforms,
                                  .waveform_noise = waveform_noise,
                                  .fixed_incidence = fixed_incidence,
+                                 .uncertainty = uncertainty,
                                  .library_physics = library_physics,
                                  .light_paths = light_paths,
                                  .platform_noise = platform_noise,
@@ -347,8 +348,8 @@ void bind_simulation(py::module_& m) {
       .def(py::init(&simulation_of), "survey"_a, py::kw_only(), "assets"_a = Paths{},
            "meshes"_a = std::vector<Simulation::Mesh>{}, "seed"_a = py::none(), "echo_width"_a = false,
            "waveforms"_a = false, "waveform_noise"_a = false, "fixed_incidence"_a = false, "library_physics"_a = false,
-           "light_paths"_a = false, "platform_noise"_a = true, "leg_noise"_a = true, "threads"_a = 0,
-           "repetition"_a = 0,
+           "light_paths"_a = false, "uncertainty"_a = false, "platform_noise"_a = true, "leg_noise"_a = true,
+           "threads"_a = 0, "repetition"_a = 0,
            "survey: SurveySettings. assets: search folders. meshes: triangles in addition to the survey's parts. seed: "
            "by default the "
            "survey's own, or 0. echo_width: fit echo widths. waveforms: keep the waveforms. waveform_noise: add "
@@ -356,6 +357,7 @@ void bind_simulation(py::module_& m) {
            "fixed_incidence: scatter as at normal incidence. library_physics: physics of the library in place of "
            "HELIOS++'s. "
            "light_paths: follow light from mirrors, glass and water. "
+           "uncertainty: points can have columns of their covariance. "
            "platform_noise, leg_noise: False removes those of the survey. threads: for "
            "building the scene; 0: all. repetition: index of the scene, of a survey with swapped parts. Raises "
            "SettingError or FileError.")
@@ -391,9 +393,7 @@ void bind_simulation(py::module_& m) {
   const auto runner = [](const Simulation& s) {
     return [&s](const RunOptions& options, const auto& sink) { return pulsecast::run(s.survey(), options, sink); };
   };
-  python::bind_run(simulation, runner, [](const Simulation& s) {
-    return s.points();
-  });
+  python::bind_run(simulation, runner, [](const Simulation& s) { return s.points(); });
 }
 
 }  // namespace

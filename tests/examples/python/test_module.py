@@ -75,6 +75,15 @@ def test_threads_do_not_change_a_bit(survey):
     assert (one.points["echo_width"] > 0).mean() > 0.9
 
 
+def test_points_state_their_covariance(survey):
+    columns = ["variance_x", "covariance_xy", "systematic_variance_z", "uncertainty_flags", "range"]
+    unknown = simulation(survey).run(columns=columns).columns
+    assert np.isnan(unknown["variance_x"]).all() and (unknown["uncertainty_flags"] == 255).all()
+    stated = simulation(survey, uncertainty=True).run(columns=columns).columns
+    assert (stated["range"] == unknown["range"]).all() and (stated["variance_x"] >= 0).all()
+    assert (stated["uncertainty_flags"] < 32).all()
+
+
 def test_settings_are_plain_objects(survey):
     assert copy.deepcopy(survey) == survey == pickle.loads(pickle.dumps(survey))
     other = copy.deepcopy(survey)
