@@ -148,6 +148,35 @@ TEST_CASE("surveys and colours outlive their simulation") {
   CHECK(coloured == after.size());
 }
 
+TEST_CASE("points of a survey state the errors that it says: accuracy, noise of the platform, a wrong mount") {
+  SurveySettings s = survey();
+  s.scanner.channels[0].accuracy = 0.01;
+  s.platform.position_noise[2] = NoiseSettings{.deviation = 0.03};
+  s.platform.attitude_noise[0] = NoiseSettings{.mean = 1e-3, .deviation = 2e-3, .lifespan = 10};
+  const auto simulation = make_simulation(s, {.seed = 5, .uncertainty = true, .meshes = {plane()}});
+  CHECK(!make_simulation(s, {.meshes = {plane()}})->points().uncertainty);
+  const UncertaintyQuery uncertainty = simulation->points().uncertainty;
+  REQUIRE(uncertainty);
+  double squares = 0, stated = 0;
+  std::size_t points = 0, promised = 0;
+  pulsecast::run(simulation->survey(), {.threads = 1}, [&](const EchoBatch& batch) {
+    for (const Shot& shot : batch.shots)
+      for (const Echo& echo : batch.echoes_of(shot)) {
+        const PointUncertainty u = uncertainty(shot, echo);
+        const Vec3 right{1, 0, 0}, beam = echo.range * shot.direction;  // about which the beam is turned
+        const Vec3 turned = cross(right, beam);
+        CHECK(u.random.zz == doctest::Approx(0.03 * 0.03 + 0.01 * 0.01 * shot.direction.z * shot.direction.z));
+        CHECK(u.systematic.zz == doctest::Approx(5e-6 * turned.z * turned.z).epsilon(0.02));
+        squares += point_of(shot, echo).z * point_of(shot, echo).z;
+        stated += u.total().zz;
+        promised += u.flags == 0 ? 1 : 0;
+        ++points;
+      }
+  });
+  CHECK(squares / stated == doctest::Approx(1).epsilon(0.15));
+  CHECK(promised == points);
+}
+
 TEST_CASE("points have the laser of their channel, for columns in photons") {
   SurveySettings s = survey();
   s.scanner.channels.push_back(s.scanner.channels[0]);
