@@ -25,6 +25,7 @@
 
 #include <doctest/doctest.h>
 
+#include "support/laws.hpp"
 #include "support/relative.hpp"
 
 using namespace pulsecast;
@@ -441,4 +442,41 @@ TEST_CASE("points say why they may err more than stated") {
   CHECK(flags(LatticeFootprint{19}, 100, AnalyticWaveform<>{{.timing = EchoTiming::true_range}}) ==
         PointUncertainty::mixed);
   CHECK(flags(SingleRay{}, 100, FirstHit{}) == 0);
+}
+
+namespace {
+
+/// Laser on a fixed mount that states given errors.
+struct Stating : Deflector<FixedBeam, Scanner> {
+  PoseError<frame::Instrument> error;
+  void visit_errors(PulseIndex, Tick, const auto& visit) const noexcept { visit(error); }
+};
+
+}  // namespace
+
+TEST_CASE("all parts of one stated error add to the uncertainty of a point, whichever are there") {
+  const Yard yard;
+  for (int parts = 0; parts < 32; ++parts) {
+    CAPTURE(parts);
+    PoseError<frame::Instrument> error;
+    if (parts & 1) error.moved = {0.01, -0.02, 0.03};
+    if (parts & 2) error.turned = {3e-3, 1e-3, -2e-3};
+    if (parts & 4) error.moved_any_way = 0.02;
+    if (parts & 8) error.turned_any_way = 1e-3;
+    if (parts & 16) error.about = Vec3{3, -2, 1};
+    const Mount mount{.lever_arm = {0, 0, 0.5}, .boresight = rotation_about(axis::up, 0.3)};
+    const Stating source{{FixedBeam{}, Scanner{.pulse_rate = 10, .pulses = 1}}, error};
+    const Survey survey{Platform{Tripod{{0, -12, 2}}, mount, source}, SingleRay{}, yard, Receiver{}, FirstHit{}};
+    auto w = survey.workspace();
+    const Outcome outcome = survey(0, w);
+    REQUIRE(outcome.echoes.size() == 1);
+    Covariance expected;
+    survey.source().visit_errors(0, {}, [&](const PoseError<frame::World>& e) noexcept {
+      support::detail::add_to(expected, e, *survey.source().pulse(0), point_of(outcome.shot, outcome.echoes[0]));
+    });
+    const Covariance stated = uncertainty_of(survey)(outcome.shot, outcome.echoes[0]).random;
+    for (const auto member :
+         {&Covariance::xx, &Covariance::yy, &Covariance::zz, &Covariance::xy, &Covariance::xz, &Covariance::yz})
+      CHECK(std::fabs(stated.*member - expected.*member) < 1e-12);
+  }
 }

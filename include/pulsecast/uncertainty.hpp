@@ -63,8 +63,10 @@ class SurveyUncertainty {
             const bool any_turn = error.turned_any_way > 0;
             if (!any_turn && error.turned == Vec3{}) return part.add(error.moved);
             const Vec3 arm = error.about ? (shot.origin - *error.about) + beam : beam;
-            if (!any_turn) return part.add(error.moved + cross(error.turned, arm));
+            if (!any_turn || error.moved != Vec3{} || error.turned != Vec3{})
+              part.add(error.moved + cross(error.turned, arm));
             const double square = error.turned_any_way * error.turned_any_way;
+            if (!any_turn) return;
             part.add(square * dot(arm, arm));
             part.add(arm, -square);
           });

@@ -23,10 +23,16 @@ TEST_CASE("an error in the frame around is what turning and moving it there disp
     CAPTURE(seed);
     support::Generator random(seed);
     const auto pose = random.pose<frame::Body, frame::World>(100);
-    PoseError<frame::Body> error{random.point(1), random.point(0.1), {}, ErrorScope::leg};
+    PoseError<frame::Body> error{.moved = random.point(1),
+                                 .turned = random.point(0.1),
+                                 .scope = ErrorScope::leg,
+                                 .moved_any_way = 3,
+                                 .turned_any_way = 4};
     if (random.coin()) error.about = random.point(10);
     const auto outer = pose * error;
     CHECK(outer.scope == ErrorScope::leg);
+    CHECK(outer.moved_any_way == 3);  // alike along all axes, so in any frame
+    CHECK(outer.turned_any_way == 4);
     CHECK(outer.about.has_value() == error.about.has_value());
 
     // differences of rigid motions by a small share of the error, seen in the world

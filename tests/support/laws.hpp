@@ -259,6 +259,15 @@ namespace detail {
 inline Vec3 displaced(const PoseError<frame::World>& error, const Pulse<frame::World>& pulse, const Vec3& point) {
   return error.moved + cross(error.turned, point - error.about.value_or(pulse.origin()));
 }
+/// Adds the covariance of that point by an error [m^2].
+inline void add_to(Covariance& covariance, const PoseError<frame::World>& error, const Pulse<frame::World>& pulse,
+                   const Vec3& point) {
+  covariance.add(displaced(error, pulse, point));
+  for (const Vec3& axis : {axis::right, axis::forward, axis::up}) {
+    covariance.add(error.moved_any_way * axis);
+    covariance.add(displaced({.turned = error.turned_any_way * axis, .about = error.about}, pulse, point));
+  }
+}
 }  // namespace detail
 
 /// Reported less true points of pulse i, at a range [m], have the covariance that the source states, over the seeds of
@@ -273,7 +282,7 @@ template <class Make>
     const Vec3 ray{0, range, 0}, point = pulse->pose.point(ray);
     found.add(pulse->reported.value_or(pulse->pose).point(ray) - point);
     source.visit_errors(i, pulse->tick, [&](const PoseError<frame::World>& error) noexcept {
-      stated.add(detail::displaced(error, *pulse, point));
+      detail::add_to(stated, error, *pulse, point);
     });
   }
   const double share = 5 * std::sqrt(2 / static_cast<double>(seeds));
