@@ -295,6 +295,10 @@ struct ErrorStep {
   const std::vector<Sample> best = sample.simulate(reference);
   std::vector<Sample> before = best;
   for (const ErrorStep& step : steps) {
+    if (step.survey.size() != reference.size())
+      throw std::invalid_argument(
+          text::joined({"errors of a run: the survey of ", step.cause, " has ", std::to_string(step.survey.size()),
+                        " slots: expected ", std::to_string(reference.size()), ", as the reference has"}));
     std::vector<Sample> now = sample.simulate(step.survey);
     errors.parts.push_back(sample.errors(step.cause, before, now));
     before = std::move(now);

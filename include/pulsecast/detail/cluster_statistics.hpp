@@ -8,7 +8,7 @@
 /// Limits that respect clusters: what is drawn at random is a cluster, not an echo.
 namespace PULSECAST_NAMESPACE::detail {
 
-/// Quantile of Student's t that 95 % are within, to 1 % from 2 degrees of freedom on. Source: Abramowitz & Stegun
+/// Quantile of Student's t that 95 % are within, to 3 % from 2 degrees of freedom on. Source: Abramowitz & Stegun
 /// 1964, 26.7.5.
 [[nodiscard]] inline double student_t(double freedom) {
   const double x = 1.959964, g1 = (std::pow(x, 3) + x) / 4,
