@@ -233,8 +233,8 @@ class Surveyed {
 /// Limits of one figure, compared with the truth.
 struct Coverage {
   std::size_t surveys = 0, held = 0;
-  double widths = 0;        ///< sum of half the width of the limits by the value
-  bool occurs = false;      ///< false: 0 in all surveys, which every limits hold
+  double widths = 0;    ///< sum of half the width of the limits by the value
+  bool occurs = false;  ///< false: 0 in all surveys, which every limits hold
 
   void add(const Estimate& stated, const Estimate& truth) {
     ++surveys;
@@ -273,9 +273,8 @@ inline void compare(const std::vector<EchoMatch>& all, const ErrorSampleOptions&
         some.push_back(match);
         some.back().cluster = k;
       }
-  const EchoErrors stated =
-      detail::errors_by_class("", some, sample.blocks().size(), sample.share(), options.reach).all;
-  const EchoErrors truth = detail::errors_by_class("", all, clusters, 1, options.reach).all;
+  const EchoErrors stated = detail::errors_by_class("", some, sample.blocks().size(), sample.share()).all;
+  const EchoErrors truth = detail::errors_by_class("", all, clusters, 1).all;
   for (std::size_t f = 0; f < error_figure_count; ++f)
     if (truth.pairs + truth.lost > 0) coverage[f].add(stated.figures[f], truth.figures[f]);
 }

@@ -35,6 +35,7 @@
 
 #include "../summary.hpp"
 #include "entry.hpp"
+#include "error_report.hpp"
 #include "forecast_report.hpp"
 #include "loading.hpp"
 #include "notes.hpp"
@@ -467,6 +468,8 @@ class Session {
 
     if (total > 0) pages_.begin(folder, compiled, options_);
     std::map<std::string, std::unique_ptr<LegRun>> open;
+    std::optional<ErrorReport> errors;
+    if (options_.errors && total > 0 && ranks_.first()) errors.emplace(simulation, survey_, options_, log_.seed);
     RunSummary all;
     ProgressLine line;
     for (std::size_t k = 0; k < compiled.legs.size() && all.complete; ++k) {
@@ -499,6 +502,7 @@ class Session {
     }
     for (auto& [prefix, files] : open) close(*files);  // of an interrupted run
     pages_.end();
+    if (errors && all.complete) errors->finish(folder, {file_.text, log_.how, log_.inputs, log_.seed, log_.run}, all);
     return all;
   }
 

@@ -227,7 +227,7 @@ class VariantForecaster {
   /// Errors of a variant against the finer survey, whose echoes are the same within `reach` [m].
   [[nodiscard]] ErrorsByClass errors(const AnySurvey& variant, double reach) const {
     return detail::errors_by_class("", detail::matches_of(finer_, sampled(variant, compared_), reach), compared_.size(),
-                                   0, reach);
+                                   0);
   }
   /// Differences of a variant from the finer survey, whose echoes are the same within `reach` [m].
   [[nodiscard]] EchoDifferences differences(const AnySurvey& variant, double reach) const {

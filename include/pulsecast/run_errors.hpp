@@ -13,39 +13,40 @@
 ///     const Estimate range = errors.parts.back().all[ErrorFigure::range];  // root mean square [m]
 namespace PULSECAST_NAMESPACE {
 
-/// Figures of the differences between found echoes and expected ones.
+/// Figures of the differences between found echoes and expected ones: quantiles over pairs of equal echoes of the
+/// absolute difference in range [m], of the distance between the two points [m], and of the relative difference in
+/// amplitude; then shares: of the expected echoes those that were not found, of the found echoes those that were not
+/// expected. The 68.3 % quantile is the standard deviation of normal differences. No root mean square: it depends on
+/// few great differences, which a sample may lack. Source: Hohle & Hohle 2009.
 enum class ErrorFigure : std::uint8_t {
-  range,
+  range_68,
   range_95,
-  position,
+  position_68,
   position_95,
-  intensity,
+  intensity_68,
   intensity_95,
   lost,
   invented
 };
-inline constexpr std::size_t error_figure_count = 8;  ///< number of figures
-
-/// Names and units of the figures, in order.
+/// Name of a figure and its unit, which is empty for a ratio.
 struct ErrorFigureName {
-  std::string_view name, unit;  ///< words of letters and `_`; empty for a ratio
+  std::string_view name, unit;
 };
-inline constexpr std::array<ErrorFigureName, error_figure_count> error_figure_names{{{"range_rms", "m"},
-                                                                                     {"range_95", "m"},
-                                                                                     {"position_rms", "m"},
-                                                                                     {"position_95", "m"},
-                                                                                     {"intensity_rms", ""},
-                                                                                     {"intensity_95", ""},
-                                                                                     {"lost", ""},
-                                                                                     {"invented", ""}}};
+/// Names of the figures, in order.
+inline constexpr std::array<ErrorFigureName, 8> error_figure_names{{{"range_68", "m"},
+                                                                    {"range_95", "m"},
+                                                                    {"position_68", "m"},
+                                                                    {"position_95", "m"},
+                                                                    {"intensity_68", ""},
+                                                                    {"intensity_95", ""},
+                                                                    {"lost", ""},
+                                                                    {"invented", ""}}};
+inline constexpr std::size_t error_figure_count = error_figure_names.size();  ///< number of figures
 
-/// Errors of echoes, with 95 % limits that respect clusters.
+/// Errors of echoes.
 struct EchoErrors {
-  /// Root mean squares and 95 % quantiles over pairs of equal echoes: of the difference in range [m], of the distance
-  /// between the two points [m], of the relative difference in amplitude. Then shares: of the expected echoes those
-  /// that were not found, and of the found echoes those that were not expected.
-  std::array<Estimate, error_figure_count> figures{};
-  std::uint64_t pairs = 0, lost = 0, invented = 0;  ///< numbers in the sample
+  std::array<Estimate, error_figure_count> figures{};  ///< by `ErrorFigure`
+  std::uint64_t pairs = 0, lost = 0, invented = 0;     ///< numbers in the sample
 
   [[nodiscard]] const Estimate& operator[](ErrorFigure f) const noexcept {
     return figures[static_cast<std::size_t>(f)];
@@ -205,28 +206,34 @@ class EchoMatcher {
   return all;
 }
 
-/// 95 % quantile of a difference over pairs. Source of the limits: Woodruff 1952, by the share of pairs below it.
-[[nodiscard]] inline Estimate exceeded_by_few(std::span<const EchoMatch* const> pairs, double EchoMatch::*difference,
-                                              std::size_t clusters, double sampled_share) {
+/// Quantile `level` of a difference over pairs. Source of the limits: Woodruff 1952, by the share of pairs above it;
+/// too few pairs have no upper limit.
+[[nodiscard]] inline Estimate quantile_of(std::span<const EchoMatch* const> pairs, double EchoMatch::*difference,
+                                          double level, std::size_t clusters, double sampled_share) {
   std::vector<double> all;
   for (const EchoMatch* pair : pairs) all.push_back(pair->*difference);
   if (all.empty()) return {0, 0, std::numeric_limits<double>::infinity()};
   std::sort(all.begin(), all.end());
   const double n = static_cast<double>(all.size());
-  const auto at = [&](double rank) { return all[static_cast<std::size_t>(std::clamp(rank, 0.0, n - 1))]; };
-  const double value = at(std::ceil(0.95 * n) - 1);
+  const auto at = [&](double share) {
+    return all[static_cast<std::size_t>(std::clamp(std::ceil(share * n) - 1, 0.0, n - 1))];
+  };
+  const double value = at(level);
+  if (sampled_share == 1) return {value, value, value};
   std::vector<ClusterSums> sums(clusters);
   for (const EchoMatch* pair : pairs) {
     sums[pair->cluster].part += pair->*difference > value ? 1 : 0;
     sums[pair->cluster].whole += 1;
   }
-  const Estimate above = ClusterRatio(sums, sampled_share).share();
-  return {value, at(n * (1 - above.high) - 1), at(std::ceil(n * (1 - above.low)))};
+  const ClusterRatio ratio(sums, sampled_share);
+  const Estimate above = ratio.share();
+  if (std::pow(level, ratio.trials()) > 0.025) return {value, 0, std::numeric_limits<double>::infinity()};
+  return {value, at(1 - above.high), at(1 - above.low + 1 / n)};
 }
 
 /// Figures of echoes in `clusters` clusters.
 [[nodiscard]] inline EchoErrors errors_of(std::span<const EchoMatch* const> matches, std::size_t clusters,
-                                          double sampled_share, double reach) {
+                                          double sampled_share) {
   EchoErrors e;
   std::vector<const EchoMatch*> pairs;
   std::vector<ClusterSums> lost(clusters), invented(clusters);
@@ -241,16 +248,8 @@ class EchoMatcher {
   }
   e.pairs = pairs.size();
   auto* out = e.figures.data();
-  for (const auto& [difference, most] :
-       {std::pair{&EchoMatch::range, reach}, {&EchoMatch::position, reach}, {&EchoMatch::intensity, 1.0}}) {
-    std::vector<ClusterSums> squares(clusters);
-    for (const EchoMatch* pair : pairs) {
-      squares[pair->cluster].part += std::pow(pair->*difference, 2);
-      squares[pair->cluster].whole += 1;
-    }
-    *out++ = ClusterRatio(squares, sampled_share).root(most);
-    *out++ = exceeded_by_few(pairs, difference, clusters, sampled_share);
-  }
+  for (const auto difference : {&EchoMatch::range, &EchoMatch::position, &EchoMatch::intensity})
+    for (const double level : {0.683, 0.95}) *out++ = quantile_of(pairs, difference, level, clusters, sampled_share);
   *out++ = ClusterRatio(lost, sampled_share).share();
   *out++ = ClusterRatio(invented, sampled_share).share();
   return e;
@@ -258,16 +257,16 @@ class EchoMatcher {
 
 /// Errors of matched echoes in `clusters` clusters, by class.
 [[nodiscard]] inline ErrorsByClass errors_by_class(std::string name, std::span<const EchoMatch> matches,
-                                                   std::size_t clusters, double sampled_share, double reach) {
+                                                   std::size_t clusters, double sampled_share) {
   std::vector<const EchoMatch*> all;
   std::map<std::uint16_t, std::vector<const EchoMatch*>> by_class;
   for (const EchoMatch& match : matches) {
     all.push_back(&match);
     by_class[match.classification].push_back(&match);
   }
-  ErrorsByClass errors{std::move(name), errors_of(all, clusters, sampled_share, reach)};
+  ErrorsByClass errors{std::move(name), errors_of(all, clusters, sampled_share)};
   for (const auto& [classification, some] : by_class)
-    errors.classes.emplace(classification, errors_of(some, clusters, sampled_share, reach));
+    errors.classes.emplace(classification, errors_of(some, clusters, sampled_share));
   return errors;
 }
 
@@ -276,7 +275,7 @@ class EchoMatcher {
 inline ErrorsByClass ErrorSample::errors(std::string name, std::span<const Sample> expected,
                                          std::span<const Sample> found) const {
   return detail::errors_by_class(std::move(name), detail::matches_of(expected, found, options_.reach), blocks_.size(),
-                                 share_, options_.reach);
+                                 share_);
 }
 
 /// Survey that differs from the one before it in a cause of errors.

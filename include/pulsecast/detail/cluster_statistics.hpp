@@ -53,20 +53,17 @@ struct ClusterRatio {
     t = student_t(std::max(2.0, 4.0 / 3 / std::max(1e-12, fourths / (squares * squares) - 1 / n)));
   }
 
-  /// Ratio as a share of the whole. Source: Wilson 1927, for as many independent trials as give this deviation.
-  [[nodiscard]] Estimate share() const {
-    if (!(clusters > 0)) return {0, 0, 1};
-    const double trials = deviation > 0 ? value * (1 - value) / (deviation * deviation) : clusters, z = t * t / trials;
-    const double middle = (value + z / 2) / (1 + z), margin = std::sqrt(z * (value * (1 - value) + z / 4)) / (1 + z);
-    return {value, std::max(0.0, middle - margin), std::min(1.0, middle + margin)};
+  /// Number of independent trials of a share that give this deviation; if only 0 or 1 was seen, one in each cluster.
+  [[nodiscard]] double trials() const {
+    return deviation > 0 ? value * (1 - value) / (deviation * deviation) : clusters;
   }
 
-  /// Square root of the ratio, by the logarithm. If nothing but 0 was seen, the upper limit is that of a share of
-  /// parts of size `most`.
-  [[nodiscard]] Estimate root(double most) const {
-    if (!(value > 0)) return {0, 0, clusters > 0 ? most * std::sqrt(share().high) : most};
-    const double factor = std::exp(t * deviation / value / 2), root = std::sqrt(value);
-    return {root, root / factor, root * factor};
+  /// Ratio as a share of the whole. Source: Wilson 1927.
+  [[nodiscard]] Estimate share() const {
+    if (!(clusters > 0)) return {0, 0, 1};
+    const double z = t * t / trials(), middle = (value + z / 2) / (1 + z),
+                 margin = std::sqrt(z * (value * (1 - value) + z / 4)) / (1 + z);
+    return {value, std::max(0.0, middle - margin), std::min(1.0, middle + margin)};
   }
 };
 

@@ -20,6 +20,7 @@ struct ReceiverOverrides {
   std::optional<int> rings{};        ///< rings of subrays: `beamSampleQuality`
   std::optional<double> bin_size{};  ///< `binSize_ns` [s]
   bool ideal = false;                ///< no noise, no echo widths, no waveforms
+  bool true_ranges = false;          ///< timed by `EchoTiming::true_range`, but with multi-bounce light
 
   bool operator==(const ReceiverOverrides&) const = default;
 };

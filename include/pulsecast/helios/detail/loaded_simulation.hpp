@@ -233,6 +233,7 @@ template <class Receiver>
   auto units = ReceiverGroups(survey.scanner).units(scanner, [&](const ChannelSettings& channel) {
     const double longest = std::min(2 * extent / speed_of_light + 20 * channel.pulse_length, 4e-6);
     WaveformSettings waveform = survey_waveform(channel, waveforms ? longest : 0, library, follows_light);
+    if (overrides.true_ranges && !follows_light) waveform.timing = EchoTiming::true_range;
     limits.limit_record(waveform, warnings);
     auto unit = widths ? receiver_unit<Receiver, GaussianFit>(channel, waveform, noisy)
                        : receiver_unit<Receiver, NoWidth>(channel, waveform, noisy);
