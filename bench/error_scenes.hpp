@@ -249,8 +249,10 @@ struct Coverage {
     widths += other.widths;
     occurs = occurs || other.occurs;
   }
-  [[nodiscard]] double share() const { return static_cast<double>(held) / static_cast<double>(surveys); }
-  [[nodiscard]] double width() const { return widths / static_cast<double>(surveys); }
+  [[nodiscard]] double share() const {
+    return surveys > 0 ? static_cast<double>(held) / static_cast<double>(surveys) : 1;
+  }
+  [[nodiscard]] double width() const { return surveys > 0 ? widths / static_cast<double>(surveys) : 0; }
 };
 
 /// Echoes of all slots of a survey, matched, in clusters of so many slots.
@@ -258,7 +260,7 @@ inline std::vector<EchoMatch> all_matches(const SurveyPair& surveys, const Error
   ErrorSampleOptions whole = options;
   whole.clusters = Surveyed::slots;
   const ErrorSample every(Surveyed::slots, whole);
-  return detail::matches_of(every.simulate(surveys.reference), every.simulate(surveys.run), options.reach);
+  return pulsecast::detail::matches_of(every.simulate(surveys.reference), every.simulate(surveys.run), options.reach);
 }
 
 /// Adds what a sample of a survey states, and what is true, to the coverage of each figure.
@@ -273,8 +275,8 @@ inline void compare(const std::vector<EchoMatch>& all, const ErrorSampleOptions&
         some.push_back(match);
         some.back().cluster = k;
       }
-  const EchoErrors stated = detail::errors_by_class("", some, sample.blocks().size(), sample.share()).all;
-  const EchoErrors truth = detail::errors_by_class("", all, clusters, 1).all;
+  const EchoErrors stated = pulsecast::detail::errors_by_class("", some, sample.blocks().size(), sample.share()).all;
+  const EchoErrors truth = pulsecast::detail::errors_by_class("", all, clusters, 1).all;
   for (std::size_t f = 0; f < error_figure_count; ++f)
     if (truth.pairs + truth.lost > 0) coverage[f].add(stated.figures[f], truth.figures[f]);
 }
@@ -296,12 +298,13 @@ inline double hills(double x, double y) {
          0.1 * std::sin(5 * x) * std::sin(4 * y);
 }
 
-/// The scenes: with the first 15 the method of the limits was chosen, the others are held out.
-[[nodiscard]] inline std::vector<ErrorScene> error_scenes() {
-  const auto back = [](Builder& b) { b.of(0).wall(60, -40, 40, -20, 20); };
-  const auto flat = [](double, double) { return 0.0; };
-  std::vector<ErrorScene> all;
-  all.push_back({"wall", [=](Builder& b, Dice&) { back(b); }});
+inline void wall_behind(Builder& b) { b.of(0).wall(60, -40, 40, -20, 20); }
+inline double flat(double, double) { return 0; }
+
+namespace detail {
+
+inline void add_scenes_1(std::vector<ErrorScene>& all) {
+  all.push_back({"wall", [](Builder& b, Dice&) { wall_behind(b); }});
   all.push_back({.name = "oblique wall",
                  .build =
                      [](Builder& b, Dice&) {
@@ -309,12 +312,12 @@ inline double hills(double x, double y) {
                      },
                  .divergence = 2e-3,
                  .spacing = 3e-3});
-  all.push_back({"steps", [=](Builder& b, Dice&) {
-                   back(b);
+  all.push_back({"steps", [](Builder& b, Dice&) {
+                   wall_behind(b);
                    for (int k = -20; k < 20; k += 2) b.wall(50 + 0.3 * k, k * 0.4, k * 0.4 + 0.4, -20, 20);
                  }});
-  all.push_back({"fence", [=](Builder& b, Dice&) {
-                   back(b);
+  all.push_back({"fence", [](Builder& b, Dice&) {
+                   wall_behind(b);
                    for (int k = -200; k < 200; ++k) b.of(1).wall(50, k * 0.04, k * 0.04 + 0.01, -20, 20);
                  }});
   all.push_back({"wires before the sky", [](Builder& b, Dice& d) {
@@ -325,21 +328,21 @@ inline double hills(double x, double y) {
                  }});
   all.push_back({.name = "wood from above",
                  .build =
-                     [=](Builder& b, Dice& d) {
+                     [](Builder& b, Dice& d) {
                        b.of(2).ground(40, 2, [](double x, double y) { return 0.3 * hills(x, y); });
                        for (int k = 0; k < 60; ++k)
                          b.of(1).leaves(d, {d(-30, 30), d(-30, 30), d(6, 10)}, {2.5, 2.5, 4}, 250, 0.2);
                      },
                  .from_above = true,
                  .spacing = 3e-3});
-  all.push_back({"wood", [=](Builder& b, Dice& d) {
+  all.push_back({"wood", [](Builder& b, Dice& d) {
                    for (int k = 0; k < 30; ++k) {
                      const double x = d(-8, 8), y = d(35, 65);
                      b.of(3).box({x, y, -10}, {x + 0.3, y + 0.3, 10});
                      b.of(1).leaves(d, {x, y, d(-1, 5)}, {1.5, 1.5, 3}, 250, 0.1);
                    }
                  }});
-  all.push_back({"facade", [=](Builder& b, Dice&) {
+  all.push_back({"facade", [](Builder& b, Dice&) {
                    for (int i = -10; i < 10; ++i)
                      for (int j = -6; j < 6; ++j) {
                        const double x = i * 1.5, z = j * 1.5;
@@ -347,6 +350,9 @@ inline double hills(double x, double y) {
                        b.of(3).wall(50.25, x + 0.5, x + 1.5, z + 0.5, z + 1.5);
                      }
                  }});
+}
+
+inline void add_scenes_2(std::vector<ErrorScene>& all) {
   all.push_back({.name = "hills from above",
                  .build = [](Builder& b, Dice&) { b.of(2).ground(45, 0.5, hills); },
                  .from_above = true,
@@ -354,18 +360,18 @@ inline double hills(double x, double y) {
                  .spacing = 4e-3,
                  .noise = 0.01,
                  .moved = 0.02});
-  all.push_back({"holes", [=](Builder& b, Dice& d) {
-                   back(b);
+  all.push_back({"holes", [](Builder& b, Dice& d) {
+                   wall_behind(b);
                    for (int i = -150; i < 150; ++i)
                      for (int j = -80; j < 80; ++j)
                        if (d(0, 1) < 0.4) b.of(1).wall(52, 0.05 * i, 0.05 * i + 0.05, 0.05 * j, 0.05 * j + 0.05);
                  }});
-  all.push_back({.name = "part that moves", .build = [=](Builder& b, Dice&) { back(b); }, .speed = 10});
+  all.push_back({.name = "part that moves", .build = [](Builder& b, Dice&) { wall_behind(b); }, .speed = 10});
   all.push_back({"stairs", [](Builder& b, Dice&) {
                    for (int k = -30; k < 30; ++k) b.box({-20, 50 + 0.15 * k, -20}, {20, 50 + 0.15 * k + 0.15, 0.1 * k});
                  }});
-  all.push_back({"balls", [=](Builder& b, Dice& d) {
-                   back(b);
+  all.push_back({"balls", [](Builder& b, Dice& d) {
+                   wall_behind(b);
                    for (int k = 0; k < 150; ++k) {
                      const double r = d.log(0.05, 0.6);
                      b.of(3).ellipsoid({d(-6, 6), d(45, 58), d(-4, 4)}, {r, r, 1.5 * r}, 8);
@@ -373,7 +379,7 @@ inline double hills(double x, double y) {
                  }});
   all.push_back({.name = "town from above",
                  .build =
-                     [=](Builder& b, Dice& d) {
+                     [](Builder& b, Dice& d) {
                        b.of(2).ground(45, 3, flat);
                        for (int k = 0; k < 150; ++k) {
                          const double x = d(-35, 35), y = d(-35, 35);
@@ -387,14 +393,16 @@ inline double hills(double x, double y) {
                    for (int i = -100; i < 100; ++i)
                      b.of(d(0, 1) < 0.5 ? 0 : 3).quad({0.1 * i, 50 + 0.05 * i, -20}, {0.1, 0.05, 0}, {0, 0, 40});
                  }});
-  // held out
-  all.push_back({"rare poles", [=](Builder& b, Dice& d) {
-                   back(b);
+  all.push_back({"rare poles", [](Builder& b, Dice& d) {
+                   wall_behind(b);
                    for (int k = 0; k < 10; ++k) {
                      const double x = d(-6, 6);
                      b.of(3).wall(d(50, 58), x, x + 0.05, -20, 20);
                    }
                  }});
+}
+
+inline void add_scenes_3(std::vector<ErrorScene>& all) {
   all.push_back({.name = "weak echoes",
                  .build =
                      [](Builder& b, Dice& d) {
@@ -404,8 +412,8 @@ inline double hills(double x, double y) {
                  .noise = 0.02,
                  .receiver = 2e-13,
                  .threshold = 60e-9});
-  all.push_back({"oblique grating", [=](Builder& b, Dice&) {
-                   back(b);
+  all.push_back({"oblique grating", [](Builder& b, Dice&) {
+                   wall_behind(b);
                    for (int k = -150; k < 150; ++k) b.of(0).quad({0.12 * k - 20, 52, -20}, {0.04, 0, 0}, {40, 0, 40});
                  }});
   all.push_back({.name = "line over hills",
@@ -419,7 +427,7 @@ inline double hills(double x, double y) {
                  .spacing = 3e-3});
   all.push_back({.name = "grass",
                  .build =
-                     [=](Builder& b, Dice& d) {
+                     [](Builder& b, Dice& d) {
                        b.of(2).ground(35, 2, flat);
                        for (int k = 0; k < 30000; ++k)
                          b.of(1).quad({d(-25, 25), d(-25, 25), 0}, {d(-0.05, 0.05), d(-0.05, 0.05), 0},
@@ -429,7 +437,7 @@ inline double hills(double x, double y) {
                  .spacing = 2e-3});
   all.push_back({.name = "cones from above",
                  .build =
-                     [=](Builder& b, Dice& d) {
+                     [](Builder& b, Dice& d) {
                        b.of(2).ground(45, 3, flat);
                        for (int k = 0; k < 120; ++k) {
                          const double r = d(0.5, 2), z = d(3, 10);
@@ -445,7 +453,10 @@ inline double hills(double x, double y) {
                      b.of(3).box(p, p + Vec3{d(0.05, 0.8), d(0.05, 0.8), d(0.05, 0.8)});
                    }
                  }});
-  all.push_back({"scaffold", [=](Builder& b, Dice&) {
+}
+
+inline void add_scenes_4(std::vector<ErrorScene>& all) {
+  all.push_back({"scaffold", [](Builder& b, Dice&) {
                    b.of(0).wall(52, -40, 40, -20, 20);
                    for (int k = -20; k < 20; ++k) {
                      b.of(3).wall(51, k, k + 0.048, -20, 20);
@@ -455,7 +466,7 @@ inline double hills(double x, double y) {
   all.push_back(
       {.name = "roofs from above",
        .build =
-           [=](Builder& b, Dice& d) {
+           [](Builder& b, Dice& d) {
              b.of(2).ground(45, 3, flat);
              for (int k = 0; k < 60; ++k) {
                const double x = d(-30, 30), y = d(-30, 30), w = d(2, 5), h = d(2, 6);
@@ -465,18 +476,19 @@ inline double hills(double x, double y) {
        .from_above = true,
        .spacing = 3e-3,
        .moved = 0.01});
-  all.push_back({"bushes", [=](Builder& b, Dice& d) {
-                   back(b);
+  all.push_back({"bushes", [](Builder& b, Dice& d) {
+                   wall_behind(b);
                    for (int k = 0; k < 20; ++k)
                      b.of(1).leaves(d, {d(-6, 6), d(45, 55), d(-3, 3)}, {1, 1, 0.8}, 500, 0.05);
                  }});
   all.push_back({.name = "gravel, grazed",
                  .build =
                      [](Builder& b, Dice& d) {
-                       b.of(2).quad({-60, 5, -3}, {120, 0, 0}, {0, 200, 0});
+                       b.of(2).quad({-60, 5, -4}, {120, 0, 0}, {0, 80, 9});
                        for (int k = 0; k < 3000; ++k) {
                          const double s = d.log(0.03, 0.3);
-                         const Vec3 p{d(-6, 6), d(25, 90), -3};
+                         const double y = d(25, 80);
+                         const Vec3 p{d(-6, 6), y, -4 + (y - 5) * 9 / 80};
                          b.of(3).box(p, p + Vec3{s, s, s});
                        }
                      },
@@ -488,10 +500,13 @@ inline double hills(double x, double y) {
                          b.of(1).leaves(d, {d(-6, 6), d(40, 60), d(-3, 3)}, {1.5, 1.5, 1.5}, 300, 0.1);
                      },
                  .speed = 15});
-  all.push_back({"blinds", [=](Builder& b, Dice&) {
-                   back(b);
+  all.push_back({"blinds", [](Builder& b, Dice&) {
+                   wall_behind(b);
                    for (int k = -200; k < 200; ++k) b.of(0).quad({-20, 50, 0.05 * k}, {40, 0, 0}, {0, 0.03, 0.03});
                  }});
+}
+
+inline void add_scenes_5(std::vector<ErrorScene>& all) {
   all.push_back({.name = "single rays in a wood",
                  .build =
                      [](Builder& b, Dice& d) {
@@ -510,6 +525,18 @@ inline double hills(double x, double y) {
                      },
                  .noise = 0.01,
                  .moved = 0.01});
+}
+
+}  // namespace detail
+
+/// The scenes: with the first 15 the method of the limits was chosen, the others are held out.
+[[nodiscard]] inline std::vector<ErrorScene> error_scenes() {
+  std::vector<ErrorScene> all;
+  detail::add_scenes_1(all);
+  detail::add_scenes_2(all);
+  detail::add_scenes_3(all);
+  detail::add_scenes_4(all);
+  detail::add_scenes_5(all);
   constexpr std::array<std::size_t, 4> subrays{7, 5, 4, 12};
   for (std::size_t k = 0; k < all.size(); ++k)
     if (all[k].subrays > 1) all[k].subrays = subrays[k % 4];

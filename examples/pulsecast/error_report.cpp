@@ -18,6 +18,7 @@
 #include <pulsecast/version.hpp>
 
 #include "estimate_text.hpp"
+#include "survey_inputs.hpp"
 
 namespace fs = std::filesystem;
 using namespace pulsecast;
@@ -45,7 +46,8 @@ std::string report_of(const RunErrors& errors, const RunOrigin& origin, const Ru
   json.begin_object().member("program", "pulsecast").member("version", PULSECAST_VERSION);
   json.member("seed", origin.seed).member("repetition", origin.repetition);
   json.member("options", origin.options).member("settings", origin.settings).key("inputs").begin_object();
-  for (const auto& [path, digest] : origin.inputs) json.member(path, digest);
+  for (const auto& [path, digest] : origin.inputs)
+    if (digest != hex(io::Fingerprint{})) json.member(path, digest);  // those that are there
   json.end_object().key("totals").begin_object();
   json.member("slots", run.slots).member("pulses", run.pulses()).member("echoes", run.echoes);
   json.member("rays", run.rays).member("seconds", run.seconds);
@@ -67,7 +69,7 @@ std::string report_of(const RunErrors& errors, const RunOrigin& origin, const Ru
 /// Value and limits of a figure, in the unit of lengths or in percent.
 std::string cell(const EchoErrors& errors, std::size_t figure) {
   const Estimate& e = errors.figures[figure];
-  return text_of(e, error_figure_names[figure].unit.empty() ? percent : length_unit(e.value));
+  return text_of(e, error_figure_names[figure].unit.empty() ? percent : length_unit(e.value), 3);
 }
 
 }  // namespace
@@ -95,8 +97,9 @@ ErrorReport::ErrorReport(const helios::Simulation& simulation, const helios::Sur
       std::async(std::launch::async, [reference, steps, sample] { return errors_of_run(reference, steps, sample); });
 }
 
-void ErrorReport::finish(const fs::path& folder, const RunOrigin& origin, const RunSummary& run) {
+void ErrorReport::finish(const fs::path& folder, RunOrigin origin, const RunSummary& run) {
   const RunErrors errors = errors_.get();
+  origin.inputs.emplace(options_.survey.string(), hex(io::content_fingerprint(options_.survey)));
   const fs::path path = folder / name;
   std::ofstream out(path);
   out << report_of(errors, origin, run) << std::flush;
@@ -110,7 +113,7 @@ void ErrorReport::print(const RunErrors& errors) const {
       "intensity, 68.3 %", "intensity, 95 %", "lost echoes",      "invented echoes"};
   const auto row = [](const std::string& label, const auto& parts, const auto& text) {
     std::cout << "  " << std::left << std::setw(18) << label;
-    for (const auto& part : parts) std::cout << std::setw(32) << text(part);
+    for (const auto& part : parts) std::cout << std::setw(30) << text(part);
     std::cout << std::right << '\n';
   };
   std::cout << "\nerrors by " << errors.slots << " of " << slots_ << " pulse slots, against " << subrays_

@@ -33,7 +33,7 @@ class ErrorReport {
               const Options& options, std::uint64_t seed);
 
   /// Waits for the errors, writes them into the folder, and prints them unless all is quiet.
-  void finish(const std::filesystem::path& folder, const RunOrigin& origin, const pulsecast::RunSummary& run);
+  void finish(const std::filesystem::path& folder, RunOrigin origin, const pulsecast::RunSummary& run);
 
  private:
   void print(const pulsecast::RunErrors& errors) const;

@@ -11,11 +11,11 @@
 
 #include <pulsecast/detail/sample_statistics.hpp>
 
-/// Three significant digits, without an exponent.
-inline std::string digits(double x, double (*rounded)(double) = std::nearbyint) {
+/// Three significant digits, without an exponent, and at most so many decimals.
+inline std::string digits(double x, double (*rounded)(double) = std::nearbyint, int decimals = 9) {
   if (!std::isfinite(x)) return "unknown";
   const int before = x == 0 ? 3 : static_cast<int>(std::floor(std::log10(std::fabs(x)))) + 1,
-            after = std::clamp(3 - before, 0, 9);
+            after = std::clamp(3 - before, 0, decimals);
   const double unit = std::pow(10.0, after);
   std::ostringstream out;
   out << std::fixed << std::setprecision(after) << rounded(x * unit) / unit;
@@ -41,8 +41,9 @@ inline Unit length_unit(double x) { return unit_of(x, {{1e-3, "mm"}, {1, "m"}});
 inline constexpr Unit one{1, ""}, percent{1e-2, "%"};
 
 /// `12.3 s (11.0 to 13.5)`; the interval is rounded outwards.
-inline std::string text_of(const pulsecast::Estimate& e, const Unit& unit) {
+inline std::string text_of(const pulsecast::Estimate& e, const Unit& unit, int decimals = 9) {
   if (!std::isfinite(e.high)) return "unknown";
-  return digits(e.value / unit.size) + (*unit.name ? " " : "") + unit.name + " (" +
-         digits(e.low / unit.size, std::floor) + " to " + digits(e.high / unit.size, std::ceil) + ')';
+  return digits(e.value / unit.size, std::nearbyint, decimals) + (*unit.name ? " " : "") + unit.name + " (" +
+         digits(e.low / unit.size, std::floor, decimals) + " to " + digits(e.high / unit.size, std::ceil, decimals) +
+         ')';
 }

@@ -294,7 +294,11 @@ class Session {
         print_notes(*simulation);
         take_columns(options_, survey_, *simulation);
       }
-      all.add(play(*simulation, folder, std::exchange(again, std::nullopt).has_value()));
+      std::optional<ErrorReport> errors;
+      if (options_.errors && ranks_.first()) errors.emplace(*simulation, survey_, options_, log_.seed);
+      const RunSummary played = play(*simulation, folder, std::exchange(again, std::nullopt).has_value());
+      if (errors && played.complete) errors->finish(folder, {file_.text, log_.how, log_.inputs, log_.seed, r}, played);
+      all.add(played);
       const fs::path done = folder;
       if (!all.complete) break;
       const std::optional<RunLock> lock_of_done = std::exchange(lock_, std::nullopt);  // held until its log is removed
@@ -468,8 +472,6 @@ class Session {
 
     if (total > 0) pages_.begin(folder, compiled, options_);
     std::map<std::string, std::unique_ptr<LegRun>> open;
-    std::optional<ErrorReport> errors;
-    if (options_.errors && total > 0 && ranks_.first()) errors.emplace(simulation, survey_, options_, log_.seed);
     RunSummary all;
     ProgressLine line;
     for (std::size_t k = 0; k < compiled.legs.size() && all.complete; ++k) {
@@ -502,7 +504,6 @@ class Session {
     }
     for (auto& [prefix, files] : open) close(*files);  // of an interrupted run
     pages_.end();
-    if (errors && all.complete) errors->finish(folder, {file_.text, log_.how, log_.inputs, log_.seed, log_.run}, all);
     return all;
   }
 

@@ -228,7 +228,7 @@ class EchoMatcher {
   const ClusterRatio ratio(sums, sampled_share);
   const Estimate above = ratio.share();
   if (std::pow(level, ratio.trials()) > 0.025) return {value, 0, std::numeric_limits<double>::infinity()};
-  return {value, at(1 - above.high), at(1 - above.low + 1 / n)};
+  return {value, at(1 - above.high), at(1 - above.low + 0.5 / n)};
 }
 
 /// Figures of echoes in `clusters` clusters.

@@ -26,7 +26,7 @@ struct ClusterSums {
 /// differences of neighbours. Sources: Cochran 1977, sections 5A.12, 6.4; Satterthwaite 1946 for the freedom.
 struct ClusterRatio {
   double value = 0, deviation = 0;  ///< ratio and its standard deviation
-  double t = student_t(2);          ///< quantile of Student's t for them
+  double t = 1.959964;              ///< quantile of Student's t for them
   double clusters = 0;              ///< clusters where the ratio is defined, more for a large part of the population
 
   ClusterRatio(std::span<const ClusterSums> sample, double sampled_share) {
