@@ -12,6 +12,7 @@
 
 #include <doctest/doctest.h>
 
+#include "../bench/error_scenes.hpp"
 #include "support/generators.hpp"
 #include "support/relative.hpp"
 
@@ -256,6 +257,16 @@ TEST_CASE("a sample's limits hold the errors of all slots, for most seeds") {
       held[f] += holds(some.figures[f], all.figures[f].value) ? 1 : 0;
   }
   for (const int times : held) CHECK(times >= 179);
+}
+
+TEST_CASE("stated limits hold the errors of all slots of small surveys of a fence, wires and rare poles") {
+  constexpr std::size_t surveys = 40;  // bench_stated_errors has more, of 30 scenes
+  for (const stated::ErrorScene& scene : stated::error_scenes()) {
+    if (scene.name != "fence" && scene.name != "wires before the sky" && scene.name != "rare poles") continue;
+    const auto coverage = stated::coverage_of(scene, surveys);
+    for (std::size_t f = 0; f < error_figure_count; ++f)
+      CHECK_MESSAGE(coverage[f].held >= 34, scene.name, ": ", error_figure_names[f].name);
+  }
 }
 
 TEST_CASE(

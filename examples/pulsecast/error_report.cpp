@@ -3,17 +3,13 @@
 
 #include "error_report.hpp"
 
-#include <algorithm>
 #include <array>
 #include <fstream>
 #include <iomanip>
 #include <iostream>
-#include <limits>
 #include <utility>
-#include <vector>
 
 #include <pulsecast/base/error.hpp>
-#include <pulsecast/base/units.hpp>
 #include <pulsecast/page/detail/json.hpp>
 #include <pulsecast/version.hpp>
 
@@ -54,6 +50,7 @@ std::string report_of(const RunErrors& errors, const RunOrigin& origin, const Ru
   for (std::size_t f = 0; f < fate_count; ++f) json.member(fate_names[f], run.fates[f]);
   json.end_object().key("sample").begin_object();
   json.member("slots", errors.slots).member("clusters", errors.clusters).member("share", errors.sampled_share);
+  json.member("subrays", errors.subrays);
   json.end_object().key("errors").begin_object();
   for (const ErrorsByClass& part : errors.parts) {
     json.key(part.name).begin_object().key("all");
@@ -74,28 +71,10 @@ std::string cell(const EchoErrors& errors, std::size_t figure) {
 
 }  // namespace
 
-ErrorReport::ErrorReport(const helios::Simulation& simulation, const helios::SurveySettings& survey,
-                         const Options& options, std::uint64_t seed)
-    : options_(options), slots_(simulation.survey().size()) {
-  double pulse_length = std::numeric_limits<double>::infinity();
-  int rings = 1;
-  for (const helios::ChannelSettings& channel : survey.scanner.channels) {
-    pulse_length = std::min(pulse_length, channel.pulse_length);
-    rings = std::max(rings, channel.waveform.rings);
-  }
-  const helios::ReceiverOverrides fine{.bin_size = pulse_length / 128, .ideal = true, .true_ranges = true};
-  helios::ReceiverOverrides finest = fine;
-  finest.rings = std::clamp(2 * rings, 26, 100);
-  const AnySurvey reference = simulation.with_receivers(finest)->survey();
-  subrays_ = reference.subrays();
-  const std::vector<ErrorStep> steps{{"sampling", simulation.with_receivers(fine)->survey()},
-                                     {"estimator", simulation.with_receivers({.ideal = true})->survey()},
-                                     {"instrument", simulation.survey()}};
-  const ErrorSampleOptions sample{
-      .seed = seed, .reach = 0.25 * speed_of_light * pulse_length, .threads = options.threads};
-  errors_ =
-      std::async(std::launch::async, [reference, steps, sample] { return errors_of_run(reference, steps, sample); });
-}
+ErrorReport::ErrorReport(const helios::Simulation& simulation, const Options& options, std::uint64_t seed)
+    : options_(options), errors_(std::async(std::launch::async, [&simulation, &options, seed] {
+        return simulation.errors({.seed = seed, .threads = options.threads});
+      })) {}
 
 void ErrorReport::finish(const fs::path& folder, RunOrigin origin, const RunSummary& run) {
   const RunErrors errors = errors_.get();
@@ -116,7 +95,7 @@ void ErrorReport::print(const RunErrors& errors) const {
     for (const auto& part : parts) std::cout << std::setw(30) << text(part);
     std::cout << std::right << '\n';
   };
-  std::cout << "\nerrors by " << errors.slots << " of " << slots_ << " pulse slots, against " << subrays_
+  std::cout << "\nerrors by a sample of " << errors.slots << " pulse slots, against " << errors.subrays
             << " subrays:\n";
   row("", errors.parts, [](const ErrorsByClass& part) { return part.name; });
   for (std::size_t f = 0; f < error_figure_count; ++f)

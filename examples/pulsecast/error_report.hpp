@@ -2,14 +2,12 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <future>
 #include <map>
 #include <string>
 
-#include <pulsecast/helios/settings.hpp>
 #include <pulsecast/helios/simulation.hpp>
 #include <pulsecast/run_errors.hpp>
 
@@ -28,9 +26,8 @@ class ErrorReport {
  public:
   static constexpr const char* name = "report.json";
 
-  /// Begins to compute.
-  ErrorReport(const pulsecast::helios::Simulation& simulation, const pulsecast::helios::SurveySettings& survey,
-              const Options& options, std::uint64_t seed);
+  /// Begins to compute; simulation and options must outlive it.
+  ErrorReport(const pulsecast::helios::Simulation& simulation, const Options& options, std::uint64_t seed);
 
   /// Waits for the errors, writes them into the folder, and prints them unless all is quiet.
   void finish(const std::filesystem::path& folder, RunOrigin origin, const pulsecast::RunSummary& run);
@@ -39,7 +36,5 @@ class ErrorReport {
   void print(const pulsecast::RunErrors& errors) const;
 
   const Options& options_;
-  std::uint64_t slots_ = 0;
-  std::size_t subrays_ = 0;  ///< of the reference
-  std::future<pulsecast::RunErrors> errors_{};
+  std::future<pulsecast::RunErrors> errors_;
 };

@@ -295,7 +295,7 @@ class Session {
         take_columns(options_, survey_, *simulation);
       }
       std::optional<ErrorReport> errors;
-      if (options_.errors && ranks_.first()) errors.emplace(*simulation, survey_, options_, log_.seed);
+      if (options_.errors && ranks_.first()) errors.emplace(*simulation, options_, log_.seed);
       const RunSummary played = play(*simulation, folder, std::exchange(again, std::nullopt).has_value());
       if (errors && played.complete) errors->finish(folder, {file_.text, log_.how, log_.inputs, log_.seed, r}, played);
       all.add(played);

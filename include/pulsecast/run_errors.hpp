@@ -66,6 +66,7 @@ struct RunErrors {
   std::uint64_t slots = 0;             ///< number of slots in the sample
   std::size_t clusters = 0;            ///< number of clusters in the sample
   double sampled_share = 0;            ///< share of the run's slots in the sample
+  std::size_t subrays = 0;             ///< subrays of a pulse in the reference
 };
 
 /// Options of a sample of slots.
@@ -290,7 +291,10 @@ struct ErrorStep {
 [[nodiscard]] inline RunErrors errors_of_run(const AnySurvey& reference, std::span<const ErrorStep> steps,
                                              const ErrorSampleOptions& options = {}) {
   const ErrorSample sample(reference.size(), options);
-  RunErrors errors{.slots = sample.slots(), .clusters = sample.blocks().size(), .sampled_share = sample.share()};
+  RunErrors errors{.slots = sample.slots(),
+                   .clusters = sample.blocks().size(),
+                   .sampled_share = sample.share(),
+                   .subrays = reference.subrays()};
   const std::vector<Sample> best = sample.simulate(reference);
   std::vector<Sample> before = best;
   for (const ErrorStep& step : steps) {

@@ -9,6 +9,7 @@
 #include <pulsecast/helios/scene.hpp>
 #include <pulsecast/helios/survey.hpp>
 #include <pulsecast/io/las.hpp>
+#include <pulsecast/run_errors.hpp>
 
 namespace PULSECAST_NAMESPACE::helios {
 
@@ -249,7 +250,7 @@ template <class Receiver>
 class LoadedSimulation final : public Simulation {
  public:
   explicit LoadedSimulation(std::shared_ptr<const LoadedRepetition> loaded, const ReceiverOverrides& overrides = {})
-      : loaded_(std::move(loaded)), warnings_(loaded_->warnings), survey_(received(overrides)) {}
+      : loaded_(std::move(loaded)), overrides_(overrides), warnings_(loaded_->warnings), survey_(received(overrides)) {}
 
   [[nodiscard]] const AnySurvey& survey() const noexcept override { return survey_; }
   [[nodiscard]] const std::vector<std::string>& warnings() const noexcept override { return warnings_; }
@@ -292,6 +293,26 @@ class LoadedSimulation final : public Simulation {
   [[nodiscard]] std::unique_ptr<Simulation> with_receivers(const ReceiverOverrides& overrides) const override {
     return std::make_unique<LoadedSimulation>(loaded_, overrides);
   }
+  [[nodiscard]] RunErrors errors(const ErrorSampleOptions& options) const override {
+    ReceiverOverrides ideal = overrides_;
+    ideal.ideal = true;
+    ReceiverOverrides fine = ideal, finest = ideal;
+    fine.bin_size = 1;
+    fine.true_ranges = finest.true_ranges = true;
+    finest.rings = 26;
+    for (const ChannelSettings& channel : loaded_->inputs->survey.scanner.channels) {
+      fine.bin_size = std::min(*fine.bin_size, channel.pulse_length / 128);
+      finest.rings = std::clamp(2 * ideal.rings.value_or(channel.waveform.rings), *finest.rings, 100);
+    }
+    finest.bin_size = fine.bin_size;
+    const auto survey = [&](const ReceiverOverrides& overrides) { return with_receivers(overrides)->survey(); };
+    ErrorSampleOptions sample = options;
+    sample.reach = 0.25 * speed_of_light * 128 * *fine.bin_size;
+    return errors_of_run(
+        survey(finest),
+        std::vector<ErrorStep>{{"sampling", survey(fine)}, {"estimator", survey(ideal)}, {"instrument", survey_}},
+        sample);
+  }
 
  private:
   [[nodiscard]] AnySurvey received(const ReceiverOverrides& overrides) {
@@ -304,6 +325,7 @@ class LoadedSimulation final : public Simulation {
   }
 
   std::shared_ptr<const LoadedRepetition> loaded_;
+  ReceiverOverrides overrides_;
   std::vector<std::string> warnings_;
   AnySurvey survey_;
 };
