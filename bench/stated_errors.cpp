@@ -32,8 +32,8 @@ int main(int argc, char** argv) {
   const std::size_t surveys = argument(1, 200), first = argument(2, 0),
                     end = std::min(argument(3, scenes.size()), scenes.size());
   std::printf("%-24s", "scene");
-  for (const pulsecast::ErrorFigureName& figure : pulsecast::error_figure_names)
-    std::printf(" %13.*s", static_cast<int>(figure.name.size()), figure.name.data());
+  for (const std::string_view figure : pulsecast::error_figure_names)
+    std::printf(" %13.*s", static_cast<int>(figure.size()), figure.data());
   std::printf("\n");
   Row all{};
   stated::Coverage sum;

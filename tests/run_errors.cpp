@@ -66,11 +66,10 @@ std::vector<Echo> echoes_at(const std::vector<double>& ranges) {
 std::vector<std::pair<int, int>> matched(const std::vector<double>& expected, const std::vector<double>& found,
                                          double reach) {
   std::vector<std::pair<int, int>> all;
-  detail::EchoMatcher(reach).match(
-      echoes_at(expected), echoes_at(found),
-      [&](std::size_t i, std::size_t j) { all.emplace_back(static_cast<int>(i), static_cast<int>(j)); },
-      [&](std::size_t i) { all.emplace_back(static_cast<int>(i), -1); },
-      [&](std::size_t j) { all.emplace_back(-1, static_cast<int>(j)); });
+  const std::vector<Echo> e = echoes_at(expected), f = echoes_at(found);
+  detail::EchoMatcher(reach).match(e, f, [&](const Echo* one, const Echo* other) {
+    all.emplace_back(one ? static_cast<int>(one - e.data()) : -1, other ? static_cast<int>(other - f.data()) : -1);
+  });
   std::sort(all.begin(), all.end());
   return all;
 }
@@ -265,7 +264,7 @@ TEST_CASE("stated limits hold the errors of all slots of small surveys of a fenc
     if (scene.name != "fence" && scene.name != "wires before the sky" && scene.name != "rare poles") continue;
     const auto coverage = stated::coverage_of(scene, surveys);
     for (std::size_t f = 0; f < error_figure_count; ++f)
-      CHECK_MESSAGE(coverage[f].held >= 34, scene.name, ": ", error_figure_names[f].name);
+      CHECK_MESSAGE(coverage[f].held >= 34, scene.name, ": ", error_figure_names[f]);
   }
 }
 

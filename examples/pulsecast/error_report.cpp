@@ -29,9 +29,9 @@ void add(JsonWriter& json, const EchoErrors& errors) {
   json.begin_object();
   for (std::size_t f = 0; f < error_figure_count; ++f) {
     const Estimate& e = errors.figures[f];
-    json.key(error_figure_names[f].name).begin_object();
+    json.key(error_figure_names[f]).begin_object();
     json.member("value", e.value).member("low", e.low).member("high", e.high);
-    json.member("unit", error_figure_names[f].unit).end_object();
+    json.member("unit", error_figure_units[f]).end_object();
   }
   json.member("pairs", errors.pairs).member("lost_echoes", errors.lost).member("invented_echoes", errors.invented);
   json.end_object();
@@ -66,7 +66,7 @@ std::string report_of(const RunErrors& errors, const RunOrigin& origin, const Ru
 /// Value and limits of a figure, in the unit of lengths or in percent.
 std::string cell(const EchoErrors& errors, std::size_t figure) {
   const Estimate& e = errors.figures[figure];
-  return text_of(e, error_figure_names[figure].unit.empty() ? percent : length_unit(e.value), 3);
+  return text_of(e, error_figure_units[figure].empty() ? percent : length_unit(e.value), 3);
 }
 
 }  // namespace

@@ -222,7 +222,7 @@ py::array trajectory_of(const Simulation& simulation, double interval) {
 py::dict dict_of(const EchoErrors& errors) {
   py::dict all;
   for (std::size_t f = 0; f < error_figure_count; ++f)
-    all[py::str(std::string(error_figure_names[f].name))] =
+    all[py::str(std::string(error_figure_names[f]))] =
         py::make_tuple(errors.figures[f].value, errors.figures[f].low, errors.figures[f].high);
   return all;
 }

@@ -18,29 +18,12 @@ namespace PULSECAST_NAMESPACE {
 /// amplitude; then shares: of the expected echoes those that were not found, of the found echoes those that were not
 /// expected. The 68.3 % quantile is the standard deviation of normal differences. No root mean square: it depends on
 /// few great differences, which a sample may lack. Source: Hohle & Hohle 2009.
-enum class ErrorFigure : std::uint8_t {
-  range_68,
-  range_95,
-  position_68,
-  position_95,
-  intensity_68,
-  intensity_95,
-  lost,
-  invented
-};
-/// Name of a figure and its unit, which is empty for a ratio.
-struct ErrorFigureName {
-  std::string_view name, unit;
-};
+enum class ErrorFigure { range_68, range_95, position_68, position_95, intensity_68, intensity_95, lost, invented };
 /// Names of the figures, in order.
-inline constexpr std::array<ErrorFigureName, 8> error_figure_names{{{"range_68", "m"},
-                                                                    {"range_95", "m"},
-                                                                    {"position_68", "m"},
-                                                                    {"position_95", "m"},
-                                                                    {"intensity_68", ""},
-                                                                    {"intensity_95", ""},
-                                                                    {"lost", ""},
-                                                                    {"invented", ""}}};
+inline constexpr std::array<std::string_view, 8> error_figure_names{
+    "range_68", "range_95", "position_68", "position_95", "intensity_68", "intensity_95", "lost", "invented"};
+/// Their units; empty for a ratio.
+inline constexpr std::array<std::string_view, 8> error_figure_units{"m", "m", "m", "m", "", "", "", ""};
 inline constexpr std::size_t error_figure_count = error_figure_names.size();  ///< number of figures
 
 /// Errors of echoes.
@@ -96,45 +79,6 @@ struct EchoMatch {
   double range = 0, position = 0, intensity = 0;  ///< absolute differences of a pair [m], [m], relative
 };
 
-/// Clusters of consecutive slots, drawn at random: one from each of many equal parts of a run, or all of a short run.
-class ErrorSample {
- public:
-  /// @throws SettingError for options out of range
-  ErrorSample(PulseIndex size, const ErrorSampleOptions& options) : options_(validated(options)) {
-    const PulseIndex end = std::min(options.end, size), slots = end - std::min(options.first, end),
-                     all = (slots + options.length - 1) / options.length,
-                     drawn = std::min<PulseIndex>(options.clusters, all);
-    for (PulseIndex k = 0; k < drawn; ++k) {
-      const double u = drawn == all ? 0 : uniform({.seed = options.seed, .pulse = k, .subray = 5});
-      const double at = (static_cast<double>(k) + u) * static_cast<double>(all) / static_cast<double>(drawn);
-      const PulseIndex from =
-          options.first + options.length * (drawn == all ? k : std::min(all - 1, static_cast<PulseIndex>(at)));
-      blocks_.push_back({from, from, std::min(end, from + options.length)});
-      slots_ += blocks_.back().end - from;
-    }
-    if (slots > 0) share_ = static_cast<double>(drawn) / static_cast<double>(all);
-  }
-
-  [[nodiscard]] const std::vector<SampleBlock>& blocks() const noexcept { return blocks_; }  ///< in order
-  [[nodiscard]] std::uint64_t slots() const noexcept { return slots_; }                      ///< number in all
-  [[nodiscard]] double share() const noexcept { return share_; }  ///< part of the run that is in the sample
-
-  /// Simulates the clusters by a survey of the same slots.
-  [[nodiscard]] std::vector<Sample> simulate(const AnySurvey& survey) const {
-    return sample(survey, blocks_, options_.threads);
-  }
-
-  /// Errors of the echoes of one survey against those of another.
-  [[nodiscard]] ErrorsByClass errors(std::string name, std::span<const Sample> expected,
-                                     std::span<const Sample> found) const;
-
- private:
-  ErrorSampleOptions options_;
-  std::vector<SampleBlock> blocks_{};
-  std::uint64_t slots_ = 0;
-  double share_ = 0;
-};
-
 namespace detail {
 
 /// Pairs the echoes of two pulses, each sorted by range. Pairs and echoes without one are chosen so that the sum of
@@ -144,10 +88,10 @@ class EchoMatcher {
  public:
   explicit EchoMatcher(double reach) : reach_(reach) {}
 
-  /// Calls `pair(i, j)`, `lost(i)` and `invented(j)`, from the last echoes to the first.
-  template <class Pair, class Lost, class Invented>
-  void match(std::span<const Echo> expected, std::span<const Echo> found, const Pair& pair, const Lost& lost,
-             const Invented& invented) {
+  /// Calls `visit(expected, found)` with pointers to the echoes of a pair, or null for none, from the last to the
+  /// first.
+  template <class Visit>
+  void match(std::span<const Echo> expected, std::span<const Echo> found, const Visit& visit) {
     const std::size_t row = found.size() + 1;
     const auto paired = [&](std::size_t i, std::size_t j) {
       return costs_[(i - 1) * row + j - 1] + std::fabs(found[j - 1].range - expected[i - 1].range);
@@ -162,12 +106,10 @@ class EchoMatcher {
       }
     for (std::size_t i = expected.size(), j = found.size(); i > 0 || j > 0;) {
       const double cost = costs_[i * row + j];
-      if (i > 0 && j > 0 && cost == paired(i, j))
-        pair(--i, --j);
-      else if (i > 0 && (j == 0 || cost == costs_[(i - 1) * row + j] + reach_ / 2))
-        lost(--i);
-      else
-        invented(--j);
+      const bool pair = i > 0 && j > 0 && cost == paired(i, j),
+                 lost = !pair && i > 0 && (j == 0 || cost == costs_[(i - 1) * row + j] + reach_ / 2);
+      const Echo* const of_expected = pair || lost ? &expected[--i] : nullptr;
+      visit(of_expected, lost ? nullptr : &found[--j]);
     }
   }
 
@@ -188,20 +130,14 @@ class EchoMatcher {
           "errors of a run: the surveys send different pulses: expected surveys of the same slots");
     for (std::size_t k = 0; k < of_expected.shots.size(); ++k) {
       const Shot &right = of_expected.shots[k], &own = of_found.shots[k];
-      const std::span<const Echo> r = of_expected.echoes_of(right), o = of_found.echoes_of(own);
-      matcher.match(
-          r, o,
-          [&](std::size_t i, std::size_t j) {
-            const Vec3 apart = own.origin + o[j].range * own.direction - (right.origin + r[i].range * right.direction);
-            all.push_back({b, r[i].classification, EchoMatch::pair, std::fabs(o[j].range - r[i].range), length(apart),
-                           std::fabs(o[j].amplitude / r[i].amplitude - 1)});
-          },
-          [&](std::size_t i) {
-            all.push_back({.cluster = b, .classification = r[i].classification, .kind = EchoMatch::lost});
-          },
-          [&](std::size_t j) {
-            all.push_back({.cluster = b, .classification = o[j].classification, .kind = EchoMatch::invented});
-          });
+      matcher.match(of_expected.echoes_of(right), of_found.echoes_of(own), [&](const Echo* e, const Echo* f) {
+        const auto kind = !f ? EchoMatch::lost : !e ? EchoMatch::invented : EchoMatch::pair;
+        EchoMatch& m = all.emplace_back(EchoMatch{b, (e ? e : f)->classification, kind});
+        if (kind != EchoMatch::pair) return;
+        m.range = std::fabs(f->range - e->range);
+        m.position = length(own.origin + f->range * own.direction - (right.origin + e->range * right.direction));
+        m.intensity = std::fabs(f->amplitude / e->amplitude - 1);
+      });
     }
   }
   return all;
@@ -273,11 +209,44 @@ class EchoMatcher {
 
 }  // namespace detail
 
-inline ErrorsByClass ErrorSample::errors(std::string name, std::span<const Sample> expected,
-                                         std::span<const Sample> found) const {
-  return detail::errors_by_class(std::move(name), detail::matches_of(expected, found, options_.reach), blocks_.size(),
-                                 share_);
-}
+/// Clusters of consecutive slots, drawn at random: one from each of many equal parts of a run, or all of a short run.
+class ErrorSample {
+ public:
+  /// @throws SettingError for options out of range
+  ErrorSample(PulseIndex size, const ErrorSampleOptions& options) : options_(validated(options)) {
+    const PulseIndex end = std::min(options.end, size), slots = end - std::min(options.first, end),
+                     all = (slots + options.length - 1) / options.length,
+                     drawn = std::min<PulseIndex>(options.clusters, all);
+    for (PulseIndex k = 0; k < drawn; ++k) {
+      const double u = drawn == all ? 0 : uniform({.seed = options.seed, .pulse = k, .subray = 5});
+      const double at = (static_cast<double>(k) + u) * static_cast<double>(all) / static_cast<double>(drawn);
+      const PulseIndex from =
+          options.first + options.length * (drawn == all ? k : std::min(all - 1, static_cast<PulseIndex>(at)));
+      blocks_.push_back({from, from, std::min(end, from + options.length)});
+    }
+    if (slots > 0) share_ = static_cast<double>(drawn) / static_cast<double>(all);
+  }
+
+  [[nodiscard]] const std::vector<SampleBlock>& blocks() const noexcept { return blocks_; }  ///< in order
+  [[nodiscard]] double share() const noexcept { return share_; }  ///< part of the run that is in the sample
+
+  /// Simulates the clusters by a survey of the same slots.
+  [[nodiscard]] std::vector<Sample> simulate(const AnySurvey& survey) const {
+    return sample(survey, blocks_, options_.threads);
+  }
+
+  /// Errors of the echoes of one survey against those of another.
+  [[nodiscard]] ErrorsByClass errors(std::string name, std::span<const Sample> expected,
+                                     std::span<const Sample> found) const {
+    return detail::errors_by_class(std::move(name), detail::matches_of(expected, found, options_.reach), blocks_.size(),
+                                   share_);
+  }
+
+ private:
+  ErrorSampleOptions options_;
+  std::vector<SampleBlock> blocks_{};
+  double share_ = 0;
+};
 
 /// Survey that differs from the one before it in a cause of errors.
 struct ErrorStep {
@@ -291,10 +260,8 @@ struct ErrorStep {
 [[nodiscard]] inline RunErrors errors_of_run(const AnySurvey& reference, std::span<const ErrorStep> steps,
                                              const ErrorSampleOptions& options = {}) {
   const ErrorSample sample(reference.size(), options);
-  RunErrors errors{.slots = sample.slots(),
-                   .clusters = sample.blocks().size(),
-                   .sampled_share = sample.share(),
-                   .subrays = reference.subrays()};
+  RunErrors errors{.clusters = sample.blocks().size(), .sampled_share = sample.share(), .subrays = reference.subrays()};
+  for (const SampleBlock& block : sample.blocks()) errors.slots += block.end - block.from;
   const std::vector<Sample> best = sample.simulate(reference);
   std::vector<Sample> before = best;
   for (const ErrorStep& step : steps) {

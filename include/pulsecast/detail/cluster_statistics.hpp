@@ -28,7 +28,6 @@ struct ClusterRatio {
   double value = 0, deviation = 0;  ///< ratio and its standard deviation
   double t = 1.959964;              ///< quantile of Student's t for them
   double clusters = 0;              ///< clusters where the ratio is defined, more for a large part of the population
-
   ClusterRatio(std::span<const ClusterSums> sample, double sampled_share) {
     double part = 0, whole = 0;
     for (const ClusterSums& c : sample) {
@@ -38,8 +37,7 @@ struct ClusterRatio {
     }
     const double left = std::max(1e-12, 1 - sampled_share);  // finite population correction
     clusters /= left;
-    if (!(whole > 0)) return;
-    value = part / whole;
+    if (whole > 0) value = part / whole;
     double squares = 0, fourths = 0, before = 0;
     for (std::size_t i = 0; i < sample.size(); ++i) {
       const double rest = sample[i].part - value * sample[i].whole, d = rest - std::exchange(before, rest);

@@ -294,24 +294,22 @@ class LoadedSimulation final : public Simulation {
     return std::make_unique<LoadedSimulation>(loaded_, overrides);
   }
   [[nodiscard]] RunErrors errors(const ErrorSampleOptions& options) const override {
-    ReceiverOverrides ideal = overrides_;
-    ideal.ideal = true;
-    ReceiverOverrides fine = ideal, finest = ideal;
-    fine.bin_size = 1;
-    fine.true_ranges = finest.true_ranges = true;
-    finest.rings = 26;
+    double pulse_length = 1;
+    int rings = 1;
     for (const ChannelSettings& channel : loaded_->inputs->survey.scanner.channels) {
-      fine.bin_size = std::min(*fine.bin_size, channel.pulse_length / 128);
-      finest.rings = std::clamp(2 * ideal.rings.value_or(channel.waveform.rings), *finest.rings, 100);
+      pulse_length = std::min(pulse_length, channel.pulse_length);
+      rings = std::max(rings, overrides_.rings.value_or(channel.waveform.rings));
     }
-    finest.bin_size = fine.bin_size;
-    const auto survey = [&](const ReceiverOverrides& overrides) { return with_receivers(overrides)->survey(); };
+    const auto survey = [&](std::optional<int> of, std::optional<double> bin, bool true_ranges) {
+      return with_receivers({.rings = of, .bin_size = bin, .ideal = true, .true_ranges = true_ranges})->survey();
+    };
+    const std::vector<ErrorStep> steps{
+        {"sampling", survey(overrides_.rings, pulse_length / 128, true)},
+        {"estimator", survey(overrides_.rings, overrides_.bin_size, overrides_.true_ranges)},
+        {"instrument", survey_}};
     ErrorSampleOptions sample = options;
-    sample.reach = 0.25 * speed_of_light * 128 * *fine.bin_size;
-    return errors_of_run(
-        survey(finest),
-        std::vector<ErrorStep>{{"sampling", survey(fine)}, {"estimator", survey(ideal)}, {"instrument", survey_}},
-        sample);
+    sample.reach = 0.25 * speed_of_light * pulse_length;
+    return errors_of_run(survey(std::clamp(2 * rings, 26, 100), pulse_length / 128, true), steps, sample);
   }
 
  private:
