@@ -17,46 +17,11 @@
 
 #include <pulsecast/base/parallel.hpp>
 
+#include "estimate_text.hpp"
 #include "forecast.hpp"
 #include "outputs.hpp"
 
 namespace {
-
-/// Three significant digits, without an exponent.
-std::string digits(double x, double (*rounded)(double) = std::nearbyint) {
-  if (!std::isfinite(x)) return "unknown";
-  const int before = x == 0 ? 3 : static_cast<int>(std::floor(std::log10(std::fabs(x)))) + 1,
-            after = std::clamp(3 - before, 0, 9);
-  const double unit = std::pow(10.0, after);
-  std::ostringstream out;
-  out << std::fixed << std::setprecision(after) << rounded(x * unit) / unit;
-  return out.str();
-}
-
-struct Unit {
-  double size;
-  const char* name;
-};
-
-/// Largest unit not above the value; else the first.
-Unit unit_of(double x, std::initializer_list<Unit> units) {
-  Unit best = *units.begin();
-  for (const Unit& unit : units)
-    if (x >= unit.size) best = unit;
-  return best;
-}
-
-Unit time_unit(double x) { return x < 120 ? Unit{1, "s"} : unit_of(x / 2, {{60, "min"}, {3600, "h"}}); }
-Unit bytes_unit(double x) { return unit_of(x, {{1e3, "kB"}, {1e6, "MB"}, {1e9, "GB"}, {1e12, "TB"}}); }
-Unit length_unit(double x) { return unit_of(x, {{1e-3, "mm"}, {1, "m"}}); }
-constexpr Unit one{1, ""}, percent{1e-2, "%"};
-
-/// `12.3 s (11.0 to 13.5)`; the interval is rounded outwards.
-std::string text_of(const pulsecast::Estimate& e, const Unit& unit) {
-  if (!std::isfinite(e.high)) return "unknown";
-  return digits(e.value / unit.size) + (*unit.name ? " " : "") + unit.name + " (" +
-         digits(e.low / unit.size, std::floor) + " to " + digits(e.high / unit.size, std::ceil) + ')';
-}
 
 /// Chooses settings, with reasons.
 class SettingsChooser {

@@ -35,6 +35,7 @@
 
 #include "../summary.hpp"
 #include "entry.hpp"
+#include "error_report.hpp"
 #include "forecast_report.hpp"
 #include "loading.hpp"
 #include "notes.hpp"
@@ -294,7 +295,11 @@ class Session {
         print_notes(*simulation);
         take_columns(options_, survey_, *simulation);
       }
-      all.add(play(*simulation, folder, std::exchange(again, std::nullopt).has_value()));
+      std::optional<ErrorReport> errors;
+      if (options_.errors && ranks_.first()) errors.emplace(*simulation, options_, log_.seed);
+      const RunSummary played = play(*simulation, folder, std::exchange(again, std::nullopt).has_value());
+      if (errors && played.complete) errors->finish(folder, {file_.text, log_.how, log_.inputs, log_.seed, r}, played);
+      all.add(played);
       const fs::path done = folder;
       if (!all.complete) break;
       const std::optional<RunLock> lock_of_done = std::exchange(lock_, std::nullopt);  // held until its log is removed

@@ -246,6 +246,7 @@ class CommandLine {
         ->type_name("M")
         ->check(number_check<double>([](double range) { return range >= 0 && range <= 1e9; }, "range from 0 to 1e9 m"));
     app_.add_flag("--geojson", o_.geojson, "Write trajectories and footprints as GeoJSON, too");
+    app_.add_flag("--errors", o_.errors, "Compute the errors of the run by a sample, and write report.json");
     app_.add_flag(both("calcEchowidth"), o_.echo_width, "Measure the width of echoes");
     app_.add_flag(both("fullwaveNoise"), o_.waveform_noise, "Add receiver noise");
     app_.add_flag(both("fixedIncidenceAngle"), o_.fixed_incidence, "Scatter as at normal incidence");

@@ -61,6 +61,7 @@ struct Options {
   bool write_misses = false;                    ///< write a table of the pulses without echoes
   std::optional<double> misses_at{};  ///< range of points for pulses without echoes; default: no such points [m]
   bool geojson = false;               ///< write trajectories and footprints
+  bool errors = false;                ///< write and print the errors of the run
   bool page = false, live = false;    ///< page of the points: as a file, and live
   std::size_t page_points = 1'000'000;
   bool split_by_channel = false, platform_noise = true, leg_noise = true, resume = false, quiet = false,

@@ -126,13 +126,6 @@ class TrialWriter {
   PulseLines counted_;
 };
 
-/// Quantile of Student's t that 95 % are within. Source: Abramowitz & Stegun 1964, 26.7.5.
-double student_t(double freedom) {
-  const double x = 1.959964, g1 = (std::pow(x, 3) + x) / 4,
-               g2 = (5 * std::pow(x, 5) + 16 * std::pow(x, 3) + 3 * x) / 96;
-  return x + g1 / freedom + g2 / (freedom * freedom);
-}
-
 /// Regression of costs on the numbers of points and of pulses that count: weighted least squares, which reproduces the
 /// sum of the costs. Source: Sarndal, Swensson & Wretman 1992, Model Assisted Survey Sampling, chapter 6, the
 /// regression estimator.
@@ -159,7 +152,7 @@ WritingCost regression(std::span<const Written> all, double Written::*cost, doub
     sum += (w.*cost) - fixed;
   }
   const double n = static_cast<double>(all.size());
-  found.unsure = n < 3 || !(sum > 0) ? 0 : student_t(n - 2) * std::sqrt(squares * n / (n - 2)) / sum;
+  found.unsure = n < 3 || !(sum > 0) ? 0 : pulsecast::detail::student_t(n - 2) * std::sqrt(squares * n / (n - 2)) / sum;
   return found;
 }
 

@@ -26,6 +26,7 @@
 #include <pulsecast/material/water_types.hpp>
 #include <pulsecast/python/bind.hpp>
 #include <pulsecast/python/ray_queries.hpp>
+#include <pulsecast/run_errors.hpp>
 #include <pulsecast/scene/scene.hpp>
 #include <pulsecast/shape/triangle_mesh.hpp>
 #include <pulsecast/version.hpp>
@@ -218,6 +219,33 @@ py::array trajectory_of(const Simulation& simulation, double interval) {
   return rows.take();
 }
 
+/// Value, lower and upper limit by the name of a figure.
+py::dict dict_of(const EchoErrors& errors) {
+  py::dict all;
+  for (std::size_t f = 0; f < error_figure_count; ++f)
+    all[py::str(std::string(error_figure_names[f]))] =
+        py::make_tuple(errors.figures[f].value, errors.figures[f].low, errors.figures[f].high);
+  return all;
+}
+
+py::dict errors_of(const Simulation& simulation, std::size_t clusters, PulseIndex length, std::uint64_t seed,
+                   unsigned threads) {
+  const RunErrors errors = [&] {
+    const py::gil_scoped_release release;
+    return simulation.errors({.seed = seed, .clusters = clusters, .length = length, .threads = threads});
+  }();
+  py::dict parts;
+  for (const ErrorsByClass& part : errors.parts) {
+    py::dict classes;
+    for (const auto& [classification, some] : part.classes) classes[py::int_(classification)] = dict_of(some);
+    py::dict both;
+    both["all"] = dict_of(part.all);
+    both["classes"] = classes;
+    parts[py::str(part.name)] = both;
+  }
+  return parts;
+}
+
 py::array legs_of(const Simulation& simulation) {
   python::Rows<LegRow> rows;
   for (const CompiledSurvey::Leg& leg : simulation.compiled().legs)
@@ -373,6 +401,10 @@ void bind_simulation(py::module_& m) {
            "Poses of the platform every `interval` seconds (from 1e-6) of each leg and at its end: a structured array "
            "of time [s], "
            "x, y, z [m, world], roll, pitch, yaw [rad; yaw clockwise from north] and leg.")
+      .def("errors", &errors_of, py::kw_only(), "clusters"_a = 1024, "length"_a = 4, "seed"_a = 0, "threads"_a = 0,
+           "Errors of a run, by a random sample of so many clusters of so many consecutive pulse slots at reference "
+           "quality: a dict by cause (sampling, estimator, instrument, together), of dicts `all` and `classes`, of "
+           "tuples of value, lower and upper 95 % limit by figure [m, or a share].")
       .def_property_readonly(
           "legs", &legs_of,
           "Structured array: number, active, start [s], duration [s], pulse_rate [Hz]; first, end: its slots.")

@@ -5,7 +5,7 @@
 
 #include <ctime>
 
-#include <pulsecast/detail/sample_statistics.hpp>
+#include <pulsecast/run_errors.hpp>
 
 /// Forecasts of whole runs from samples of their slots, in about a second each:
 ///
@@ -224,9 +224,16 @@ class VariantForecaster {
     return estimate;
   }
 
+  /// Errors of a variant against the finer survey, whose echoes are the same within `reach` [m].
+  [[nodiscard]] ErrorsByClass errors(const AnySurvey& variant, double reach) const {
+    return detail::errors_by_class("", detail::matches_of(finer_, sampled(variant, compared_), reach), compared_.size(),
+                                   0);
+  }
   /// Differences of a variant from the finer survey, whose echoes are the same within `reach` [m].
   [[nodiscard]] EchoDifferences differences(const AnySurvey& variant, double reach) const {
-    return differences_of(finer_, sampled(variant, compared_), reach);
+    const EchoErrors all = errors(variant, reach).all;
+    return {all[ErrorFigure::range_95], all[ErrorFigure::intensity_95], all[ErrorFigure::lost].value,
+            all[ErrorFigure::invented].value};
   }
 
  private:
@@ -234,38 +241,6 @@ class VariantForecaster {
 
   [[nodiscard]] std::vector<Sample> sampled(const AnySurvey& survey, std::span<const SampleBlock> blocks) const {
     return sample(survey, blocks, survey_.options_.threads);
-  }
-
-  /// Differences between samples of the same slots, the first by a finer simulation. Each of its echoes is matched with
-  /// the nearest one within `reach` [m].
-  [[nodiscard]] static EchoDifferences differences_of(std::span<const Sample> finer, std::span<const Sample> other,
-                                                      double reach) {
-    std::vector<double> range, intensity;
-    std::size_t of_finer = 0, of_other = 0;
-    for (std::size_t b = 0; b < finer.size(); ++b) {
-      const EchoBatch fine = finer[b].batch(), coarse = other[b].batch();
-      for (std::size_t k = 0; k < fine.shots.size(); ++k) {
-        const std::span<const Echo> expected = fine.echoes_of(fine.shots[k]), found = coarse.echoes_of(coarse.shots[k]);
-        std::size_t next = 0;
-        for (const Echo& echo : expected) {
-          const auto distance = [&](std::size_t i) { return std::fabs(found[i].range - echo.range); };
-          std::size_t nearest = next;
-          for (std::size_t i = next; i < found.size(); ++i)
-            if (distance(i) < distance(nearest)) nearest = i;
-          if (nearest >= found.size() || distance(nearest) > reach) continue;
-          range.push_back(distance(nearest));
-          intensity.push_back(std::fabs(found[nearest].amplitude / echo.amplitude - 1));
-          next = nearest + 1;
-        }
-        of_finer += expected.size();
-        of_other += found.size();
-      }
-    }
-    const auto share_without = [&](std::size_t all) {
-      return all > 0 ? 1 - static_cast<double>(range.size()) / static_cast<double>(all) : 0;
-    };
-    return {detail::exceeded_by_few(range), detail::exceeded_by_few(intensity), share_without(of_finer),
-            share_without(of_other)};
   }
 
   /// Adds the difference in echoes from the survey itself, measured on the same pulses.

@@ -20,6 +20,7 @@
 #include <pulsecast/helios/survey.hpp>
 #include <pulsecast/material/weather.hpp>
 #include <pulsecast/run.hpp>
+#include <pulsecast/run_errors.hpp>
 
 #include "support/laws.hpp"
 #include "support/relative.hpp"
@@ -110,6 +111,32 @@ TEST_CASE("ideal receivers have no noise, and those of the survey keep it") {
   CHECK(farthest_from_plane(run(*ideal)) < 0.05);
   CHECK(run(*simulation).points == noisy.points);
   CHECK(run(*ideal->with_receivers({})).points == noisy.points);
+}
+
+TEST_CASE("errors of a run are told apart: noise of ranges is the instrument's, late peaks of slopes the estimator's") {
+  SurveySettings s = survey();
+  s.scanner.channels[0].accuracy = 0.1;
+  const auto errors = [&](bool library_physics, const ReceiverOverrides& overrides) {
+    return make_simulation(s, {.seed = 3, .library_physics = library_physics, .meshes = {plane()}})
+        ->with_receivers(overrides)
+        ->errors({.clusters = 1000, .threads = 1});
+  };
+  const auto range = [](const RunErrors& e, std::size_t part) {
+    return e.parts[part].all[ErrorFigure::range_68].value;
+  };
+  const RunErrors noisy = errors(false, {});
+  CHECK(noisy.slots == 2000);
+  CHECK(noisy.subrays >= 2000);
+  REQUIRE(noisy.parts.size() == 4);
+  CHECK(range(noisy, 0) < 1e-3);
+  CHECK(range(noisy, 1) < 1e-9);  // the survey knows true ranges, too
+  CHECK(range(noisy, 2) == support::relative(0.1, 0.05));
+  CHECK(noisy.parts[3].name == "together");
+  CHECK(range(noisy, 3) == support::relative(0.1, 0.05));
+  const RunErrors peaks = errors(true, {.ideal = true});
+  CHECK(range(peaks, 1) > 1e-6);
+  CHECK(range(peaks, 2) == 0);
+  CHECK(range(errors(false, {.rings = 1, .ideal = true}), 0) > 1.5 * range(noisy, 0));
 }
 
 TEST_CASE("a repetition draws noise of its own, and a receiver without rings has its central ray") {

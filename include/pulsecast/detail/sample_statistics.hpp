@@ -91,17 +91,6 @@ using BySlotKind = std::array<double, SlotKind::count>;
   return cost;
 }
 
-/// 95 % quantile, with confidence limits by order statistics. Source: David & Nagaraja 2003, section 7.1, with the
-/// normal approximation of the binomial distribution.
-[[nodiscard]] inline Estimate exceeded_by_few(std::vector<double> all) {
-  if (all.empty()) return {0, 0, std::numeric_limits<double>::infinity()};
-  std::sort(all.begin(), all.end());
-  constexpr double share = 0.95;
-  const double n = static_cast<double>(all.size()), margin = 2 * std::sqrt(n * share * (1 - share));
-  const auto at = [&](double rank) { return all[static_cast<std::size_t>(std::clamp(rank, 0.0, n - 1))]; };
-  return {at(n * share), at(n * share - margin), at(n * share + margin)};
-}
-
 }  // namespace detail
 
 }  // namespace PULSECAST_NAMESPACE

@@ -11,6 +11,11 @@
 #include <pulsecast/shape/mesh_data.hpp>
 
 /// Surveys of XML documents, ready to run. `make_simulation` makes them; running them needs only this header.
+namespace PULSECAST_NAMESPACE {
+struct ErrorSampleOptions;
+struct RunErrors;
+}  // namespace PULSECAST_NAMESPACE
+
 namespace PULSECAST_NAMESPACE::helios {
 
 struct CompiledSurvey;
@@ -20,6 +25,7 @@ struct ReceiverOverrides {
   std::optional<int> rings{};        ///< rings of subrays: `beamSampleQuality`
   std::optional<double> bin_size{};  ///< `binSize_ns` [s]
   bool ideal = false;                ///< no noise, no echo widths, no waveforms
+  bool true_ranges = false;          ///< timed by `EchoTiming::true_range`, but with multi-bounce light
 
   bool operator==(const ReceiverOverrides&) const = default;
 };
@@ -89,6 +95,10 @@ class Simulation {
   [[nodiscard]] virtual std::unique_ptr<Simulation> repetition(int number) const = 0;
   /// The same scene and legs with other receivers. @throws SettingError for overrides out of range
   [[nodiscard]] virtual std::unique_ptr<Simulation> with_receivers(const ReceiverOverrides& overrides) const = 0;
+  /// Errors of a run by sampling, estimator, instrument, and together, against at least 2,030 subrays, true ranges and
+  /// 128 bins a pulse: run_errors.hpp. `ErrorSampleOptions::reach` becomes half the length of the shortest pulse. May
+  /// be called while a run goes on. @throws SettingError for options out of range
+  [[nodiscard]] virtual RunErrors errors(const ErrorSampleOptions& options) const = 0;
 };
 
 }  // namespace PULSECAST_NAMESPACE::helios

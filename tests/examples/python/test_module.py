@@ -524,6 +524,18 @@ def test_trajectories_and_legs(survey):
             run.trajectory(interval)
 
 
+def test_errors_of_a_run_are_told_apart_by_cause_and_class(survey):
+    survey.scanner.channels[0].accuracy = 0.1
+    errors = simulation(survey).errors(clusters=200, seed=1, threads=1)
+    assert list(errors) == ["sampling", "estimator", "instrument", "together"]
+    assert list(errors["together"]["classes"]) == [2]
+    value, low, high = errors["instrument"]["all"]["range_68"]
+    assert low < value < high and 0.08 < value < 0.12
+    assert errors["together"]["all"]["lost"][2] > 0  # a limit, not certainty
+    with pytest.raises(pulsecast.SettingError):
+        simulation(survey).errors(clusters=1)
+
+
 def test_memory_is_given_back(survey):
     def peak():
         return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss

@@ -9,6 +9,7 @@
 #include <pulsecast/helios/scene.hpp>
 #include <pulsecast/helios/survey.hpp>
 #include <pulsecast/io/las.hpp>
+#include <pulsecast/run_errors.hpp>
 #include <pulsecast/uncertainty.hpp>
 
 namespace PULSECAST_NAMESPACE::helios {
@@ -77,35 +78,6 @@ class WaveformLimits {
   std::string name_;
   bool las_;
 };
-
-/// Wavelength of all channels, for media [m]. @throws SettingError if there are several
-[[nodiscard]] inline double wavelength_of(const SurveySettings& survey) {
-  const std::vector<ChannelSettings>& channels = survey.scanner.channels;
-  for (const ChannelSettings& channel : channels)
-    if (channel.wavelength != channels.front().wavelength)
-      throw SettingError("wavelength_nm (of another channel, with a preset of <medium>)",
-                         units::nanometre.number(channel.wavelength), "nm",
-                         "that of the first; give the coefficients of the medium instead");
-  return channels.front().wavelength;
-}
-
-/// Transport of a survey: that of `<light>` and `<medium>`, if its scene has one.
-/// @throws SettingError for boxes of media that overlap, and presets beyond the wavelength
-[[nodiscard]] inline SurveyLight survey_light(const SurveySettings& survey, bool follows_light, bool library_physics) {
-  if (!follows_light) return SurveyLight(DirectLight{.spread_planes = library_physics});
-  const SceneSettings& scene = survey.scene;
-  const LightSettings light = scene.light.empty() ? LightSettings{} : scene.light.front();
-  const bool by_wavelength =
-      std::any_of(scene.media.begin(), scene.media.end(), [](const auto& m) { return m.preset != MediumPreset::none; });
-  return SurveyLight(
-      LightPaths{.passages = static_cast<std::size_t>(light.passages),
-                 .share_min = light.share_min,
-                 .spread_planes = library_physics,
-                 .scattering = {.orders = static_cast<std::size_t>(light.orders),
-                                .paths = static_cast<std::size_t>(light.paths),
-                                .field_of_view = light.field_of_view},
-                 .air = scene.air(by_wavelength ? wavelength_of(survey) : MediumSettings::known_wavelength)});
-}
 
 /// Inputs of a simulation, for all repetitions.
 struct SimulationInputs {
@@ -240,6 +212,7 @@ template <class Receiver>
   auto units = ReceiverGroups(survey.scanner).units(scanner, [&](const ChannelSettings& channel) {
     const double longest = std::min(2 * extent / speed_of_light + 20 * channel.pulse_length, 4e-6);
     WaveformSettings waveform = survey_waveform(channel, waveforms ? longest : 0, library, follows_light);
+    if (overrides.true_ranges && !follows_light) waveform.timing = EchoTiming::true_range;
     limits.limit_record(waveform, warnings);
     auto unit = widths ? receiver_unit<Receiver, GaussianFit>(channel, waveform, noisy, settings.uncertainty)
                        : receiver_unit<Receiver, NoWidth>(channel, waveform, noisy, settings.uncertainty);
@@ -261,7 +234,7 @@ template <class Receiver>
 class LoadedSimulation final : public Simulation {
  public:
   explicit LoadedSimulation(std::shared_ptr<const LoadedRepetition> loaded, const ReceiverOverrides& overrides = {})
-      : loaded_(std::move(loaded)), warnings_(loaded_->warnings), joined_(received(overrides)) {}
+      : loaded_(std::move(loaded)), overrides_(overrides), warnings_(loaded_->warnings), joined_(received(overrides)) {}
 
   [[nodiscard]] const AnySurvey& survey() const noexcept override { return joined_.survey; }
   [[nodiscard]] const std::vector<std::string>& warnings() const noexcept override { return warnings_; }
@@ -305,6 +278,24 @@ class LoadedSimulation final : public Simulation {
   [[nodiscard]] std::unique_ptr<Simulation> with_receivers(const ReceiverOverrides& overrides) const override {
     return std::make_unique<LoadedSimulation>(loaded_, overrides);
   }
+  [[nodiscard]] RunErrors errors(const ErrorSampleOptions& options) const override {
+    double pulse_length = 1;
+    int rings = 1;
+    for (const ChannelSettings& channel : loaded_->inputs->survey.scanner.channels) {
+      pulse_length = std::min(pulse_length, channel.pulse_length);
+      rings = std::max(rings, overrides_.rings.value_or(channel.waveform.rings));
+    }
+    const auto survey = [&](std::optional<int> of, std::optional<double> bin, bool true_ranges) {
+      return with_receivers({.rings = of, .bin_size = bin, .ideal = true, .true_ranges = true_ranges})->survey();
+    };
+    const std::vector<ErrorStep> steps{
+        {"sampling", survey(overrides_.rings, pulse_length / 128, true)},
+        {"estimator", survey(overrides_.rings, overrides_.bin_size, overrides_.true_ranges)},
+        {"instrument", joined_.survey}};
+    ErrorSampleOptions sample = options;
+    sample.reach = 0.25 * speed_of_light * pulse_length;
+    return errors_of_run(survey(std::clamp(2 * rings, 26, 100), pulse_length / 128, true), steps, sample);
+  }
 
  private:
   [[nodiscard]] JoinedSurvey received(const ReceiverOverrides& overrides) {
@@ -317,6 +308,7 @@ class LoadedSimulation final : public Simulation {
   }
 
   std::shared_ptr<const LoadedRepetition> loaded_;
+  ReceiverOverrides overrides_;
   std::vector<std::string> warnings_;
   JoinedSurvey joined_;
 };

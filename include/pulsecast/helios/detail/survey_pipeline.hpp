@@ -3,10 +3,9 @@
 #ifndef PULSECAST_HELIOS_DETAIL_SURVEY_PIPELINE_HPP
 #define PULSECAST_HELIOS_DETAIL_SURVEY_PIPELINE_HPP
 
-#include <variant>
-
 #include <pulsecast/detector/full_waveform.hpp>
 #include <pulsecast/detector/gaussian_fit.hpp>
+#include <pulsecast/helios/settings.hpp>
 #include <pulsecast/scanner/footprint.hpp>
 #include <pulsecast/transport/direct_light.hpp>
 #include <pulsecast/transport/light_paths.hpp>
@@ -91,6 +90,35 @@ class SurveyLight {
  private:
   std::variant<DirectLight, LightPaths> light_;
 };
+
+/// Wavelength of all channels, for media [m]. @throws SettingError if there are several
+[[nodiscard]] inline double wavelength_of(const SurveySettings& survey) {
+  const std::vector<ChannelSettings>& channels = survey.scanner.channels;
+  for (const ChannelSettings& channel : channels)
+    if (channel.wavelength != channels.front().wavelength)
+      throw SettingError("wavelength_nm (of another channel, with a preset of <medium>)",
+                         units::nanometre.number(channel.wavelength), "nm",
+                         "that of the first; give the coefficients of the medium instead");
+  return channels.front().wavelength;
+}
+
+/// Transport of a survey: that of `<light>` and `<medium>`, if its scene has one.
+/// @throws SettingError for boxes of media that overlap, and presets beyond the wavelength
+[[nodiscard]] inline SurveyLight survey_light(const SurveySettings& survey, bool follows_light, bool library_physics) {
+  if (!follows_light) return SurveyLight(DirectLight{.spread_planes = library_physics});
+  const SceneSettings& scene = survey.scene;
+  const LightSettings light = scene.light.empty() ? LightSettings{} : scene.light.front();
+  const bool by_wavelength =
+      std::any_of(scene.media.begin(), scene.media.end(), [](const auto& m) { return m.preset != MediumPreset::none; });
+  return SurveyLight(
+      LightPaths{.passages = static_cast<std::size_t>(light.passages),
+                 .share_min = light.share_min,
+                 .spread_planes = library_physics,
+                 .scattering = {.orders = static_cast<std::size_t>(light.orders),
+                                .paths = static_cast<std::size_t>(light.paths),
+                                .field_of_view = light.field_of_view},
+                 .air = scene.air(by_wavelength ? wavelength_of(survey) : MediumSettings::known_wavelength)});
+}
 
 }  // namespace PULSECAST_NAMESPACE::helios::detail
 
