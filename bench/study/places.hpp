@@ -45,7 +45,7 @@ template <class Source, class Wanted>
 [[nodiscard]] Scenario place(Scenario s, const Whole& whole, const Source& source, double threshold, Wanted wanted) {
   s.instrument.threshold = threshold;
   const Exact exact = s.follows_light ? nullptr : in_double(whole);
-  for (Pulses& run : runs_of(source, 128, 16, wanted))
+  for (Pulses& run : runs_of(source, 96, 16, wanted))
     s.clusters.push_back({.map = whole, .exact = exact, .pulses = std::move(run)});
   return s;
 }

@@ -151,7 +151,7 @@ struct Object {
   double reach = 100;  ///< of planes and wires [m]
 };
 
-inline constexpr std::size_t cluster_count = 64, pulses_each = 16;
+inline constexpr std::size_t cluster_count = 64, pulses_each = 8;
 
 /// Scene of clusters, each of an object of its own. Beams have any roll; those of `level` objects nearly none.
 [[nodiscard]] inline Scenario scene_of(Scenario s, double range, double threshold, std::uint32_t stream,

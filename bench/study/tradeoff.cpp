@@ -154,13 +154,10 @@ Measured measure(const bench::Report& report, const Scenario& scenario, std::uin
       standard, resolution);
   print(scored(compared({"*definition of XML surveys*"}, truth[0], truth[1], resolution)), standard, resolution);
   for (const Row& row : found.rows) print(row, standard, resolution);
-  std::printf(
-      "\n%zu pulses with %zu echoes by the %s; %s a pulse by default; for %s.\n", pulses, echoes,
-      scenario.has_truth() ? "truth" : "reference",
-      (rounded(1e9 * bench::median(standard.times) / static_cast<double>(16 * ((scenario.clusters.size() + 3) / 4))) +
-       " ns")
-          .c_str(),
-      scenario.held_out ? "showing" : "choosing");
+  std::printf("\n%zu pulses with %zu echoes by the %s; by default %s us a pulse; for %s.\n", pulses, echoes,
+              scenario.has_truth() ? "truth" : "reference",
+              rounded(1e6 * bench::median(standard.times) / static_cast<double>(timed_pulses(scenario))).c_str(),
+              scenario.held_out ? "showing" : "choosing");
   return found;
 }
 

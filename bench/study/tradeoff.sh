@@ -12,12 +12,12 @@ build=${1:-build/release}
 page=docs/tables/tradeoff.md
 program=$build/bench/bench_tradeoff
 [ -x "$program" ] || { echo "tradeoff.sh: there is no $program; build it first" >&2; exit 1; }
-[ $# -le 1 ] || exec "$program" --markdown --rounds 15 --seconds 0.02 "${@:2}"
+[ $# -le 1 ] || exec "$program" --markdown --rounds 9 --seconds 0.01 "${@:2}"
 command -v gnuplot > /dev/null || { echo "tradeoff.sh: gnuplot is not there (Debian package: gnuplot-nox)" >&2; exit 1; }
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 
 sed '/^`tradeoff`/Q' "$page" > "$work/page"
-"$program" --markdown --rounds 15 --seconds 0.02 "$work/scores.csv" >> "$work/page"
+"$program" --markdown --rounds 9 --seconds 0.01 "$work/scores.csv" >> "$work/page"
 gnuplot -e "csv='$work/scores.csv'; picture='docs/pictures/tradeoff.svg'" bench/study/tradeoff.gp
 cat "$work/page" > "$page"
