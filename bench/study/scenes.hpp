@@ -158,7 +158,8 @@ inline constexpr std::size_t cluster_count = 64, pulses_each = 8;
                                        const std::function<Object(Dice&)>& make, const Frame& frame = {}) {
   const double k = frame.scale;
   Instrument& instrument = s.instrument;
-  if (s.gate.near == 0) s.gate = {range - 60 * instrument.resolution(), range + 60 * instrument.resolution()};
+  if (s.gate.near == 0)
+    s.gate = {std::fmax(range - 60 * instrument.resolution(), range / 2), range + 60 * instrument.resolution()};
   instrument.laser.pulse_length *= k;
   instrument.laser.waist_diameter *= k;
   instrument.laser.waist_range *= k;
@@ -316,12 +317,12 @@ inline const Laser terrestrial{.wavelength = 1550_nm, .peak_power = 10_W, .pulse
              .held_out = true,
              .instrument = {airborne}},
             1000, 0.002, 8, [](Dice& d) { return paint(d, 1000, 0.25); }),
-      scene({.name = "waist, wire",
+      scene({.name = "waist wire",
              .title = "Wires of 1 to 8 mm at 20 m, in a beam with a waist of 5 mm",
              .held_out = true,
              .instrument = {collimated}},
             20, 0.02, 9, [](Dice& d) { return wire(d, 20, 0.0065, 0.0005, 0.004); }),
-      scene({.name = "waist, slope",
+      scene({.name = "waist slope",
              .title = "Planes at 40 to 80 degrees, 3,000 m away, in a beam with a waist of 5 mm",
              .held_out = true,
              .instrument = {wide}},

@@ -10,7 +10,7 @@ set style line 1 linecolor rgb "#d55e00" linewidth 1.2 pointtype 4 pointsize 0.5
 set style line 2 linecolor rgb "#0072b2" linewidth 1.2 pointtype 6 pointsize 0.5  # sunflower
 set style line 3 linecolor rgb "#009e73" linewidth 1.6 pointtype 7 pointsize 0.5  # lattice
 kinds = "rings sunflower lattice"
-scenes = system(sprintf("cut -d, -f1,2 '%s' | uniq | cut -d, -f1 | uniq | tr ' ,' '_\n'", csv))
+scenes = system(sprintf("cut -d, -f1,2 '%s' | uniq | cut -d, -f1 | uniq | tr ' ' '_'", csv))
 rows(scene, kind) = sprintf("< tr ' ' '_' < '%s' | awk -F, '$1 == \"%s\" && $2 == \"%s\"' | sort -t, -k3n", csv, scene, kind)
 
 set terminal @terminal size 1400,820 enhanced font "Arial,12" background rgb "white"
@@ -30,7 +30,7 @@ do for [k = 1:words(scenes)] {
   set title word(scenes, k) font ",13" offset 0,-0.7 noenhanced
   if (k > (lines - 1) * columns) { set xlabel "subrays" offset 0,0.6 } else { unset xlabel }
   if (k % columns == 1) { set ylabel "score [mm an echo]" offset 1.5,0 } else { unset ylabel }
-  if (k == words(scenes)) { set key at screen 0.5,0.025 center center horizontal Left reverse font ",12" samplen 3 width 2 }
+  if (k == words(scenes)) { set key at screen 0.5,0.025 center center horizontal maxrows 1 Left reverse font ",12" samplen 3 width 2 }
   plot for [i = 1:3] rows(word(scenes, k), word(kinds, i)) using 3:4 with linespoints linestyle i title word(kinds, i), \
        for [i = 1:3] rows(word(scenes, k), word(kinds, i)) using 3:4:5:6 with yerrorbars linestyle i notitle
 }

@@ -129,10 +129,9 @@ class SunflowerFootprint {
 
 /// Subrays of equal energy on a lattice with a column and a row for each, at the quantiles of a
 /// Gaussian beam, mapped so that the second moments are the beam's. Rows follow the order of the
-/// multiples of the golden ratio: neighbours across are far apart up. Pareto-optimal in
-/// docs/tradeoff.md. Edges and wires upright or level in the beam are sampled as exactly as with
-/// twice the number of subrays in rings, oblique ones as on a sunflower of as many. Source:
-/// Niederreiter 1992, ch. 3, for the order; rows and columns from the normal distribution.
+/// multiples of the golden ratio: neighbours across are far apart up. Fewer errors than as many
+/// subrays in rings, and as few as on a sunflower (docs/tradeoff.md). Source: Niederreiter 1992,
+/// ch. 3, for the order; rows and columns from the normal distribution.
 class LatticeFootprint {
  public:
   /// `subrays` from 1 to 100,000. Throws a `SettingError`.
