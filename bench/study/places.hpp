@@ -193,26 +193,25 @@ inline void add_wire(MeshData& mesh, const Vec3& from, const Vec3& to, double sa
 
 /// Makers of all scenes with a reference, by name.
 [[nodiscard]] inline std::vector<std::pair<std::string, std::function<Scenario()>>> reference_scenes() {
-  return {
-      {"street",
-       [] {
-         return street_from_a_car({.name = "street", .title = "A street from a car"},
-                                  street::materials()[street::glass]);
-       }},
-      {"facade", [] { return facade({.name = "facade", .title = "Edges and wires of a facade, from a tripod"}); }},
-      {"wood", [] { return wood_from_a_drone({.name = "wood", .title = "A wood from a drone", .held_out = true}); }},
-      {"glass",
-       [] {
-         return street_from_a_car(
-             {.name = "glass", .title = "Windows of a street, from a car", .held_out = true, .follows_light = true},
-             {.reflectance = 0.02, .smooth = SmoothInterface::pane()});
-       }},
-      {"water", [] {
-         return river({.name = "water",
-                       .title = "Water of 0.3 to 6 m with waves, from the air",
-                       .held_out = true,
-                       .follows_light = true});
-       }}};
+  return {{"street",
+           [] {
+             return street_from_a_car({.name = "street", .title = "A street from a car"},
+                                      street::materials()[street::glass]);
+           }},
+          {"facade", [] { return facade({.name = "facade", .title = "Edges and wires of a facade, from a tripod"}); }},
+          {"wood", [] { return wood_from_a_drone({.name = "wood", .title = "A wood from a drone"}); }},
+          {"glass",
+           [] {
+             return street_from_a_car(
+                 {.name = "glass", .title = "Windows of a street, from a car", .held_out = true, .follows_light = true},
+                 {.reflectance = 0.02, .smooth = SmoothInterface::pane()});
+           }},
+          {"water", [] {
+             return river({.name = "water",
+                           .title = "Water of 0.3 to 6 m with waves, from the air",
+                           .held_out = true,
+                           .follows_light = true});
+           }}};
 }
 
 }  // namespace tradeoff

@@ -197,6 +197,8 @@ void print_claims(const std::vector<Measured>& scenes) {
                                                     {"lattice 19", "sunflower 19"},
                                                     {"lattice 7", "rings 7"},
                                                     {"lattice 9", "rings 19"},
+                                                    {"rings 37", "rings 19"},
+                                                    {"rings 130", "rings 37"},
                                                     {"lattice 37", "rings 37"},
                                                     {"lattice 19", "rings 37"},
                                                     {"lattice 127", "rings 130"},

@@ -52,7 +52,7 @@ enum class RingMoments : std::uint8_t {
 /// Concentric circles about a central ray; circle i has floor(2 pi i) subrays. Each represents the
 /// ring of the beam up to halfway to its neighbours, and its subrays share that energy. The
 /// outermost ring ends at the 1/e^2 radius. Footprint of XML surveys. The beam extends beyond it,
-/// so more than 19 subrays gain little (docs/tradeoff.md): see `LatticeFootprint`. Slopes broaden
+/// so a `LatticeFootprint` of as many subrays has fewer errors (docs/tradeoff.md). Slopes broaden
 /// an echo by 17 % less than a beam does, unless the moments are those of the whole beam. Source:
 /// Winiwarter et al. 2022 for the numbers; the radii are our own, so that rings tile the footprint.
 class RingFootprint {
