@@ -86,6 +86,7 @@ std::string rounded(double x) {
   return text;
 }
 std::string shown(const Interval& i, double unit = 1) {
+  if (std::isnan(i.middle)) return "";
   return rounded(unit * i.middle) + " [" + rounded(unit * i.low) + ", " + rounded(unit * i.high) + "]";
 }
 std::string shown_median(const std::vector<double>& repeated) {

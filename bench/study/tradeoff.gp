@@ -26,12 +26,15 @@ set format y "%g"
 set xrange [0.8:170]
 set xtics (1, 3, 7, 19, 37, 127)
 unset key
+set label 1 "rings" at screen 0.40,0.025 point linestyle 1 offset 1,0 textcolor rgb "#d55e00"
+set label 2 "sunflower" at screen 0.47,0.025 point linestyle 2 offset 1,0 textcolor rgb "#0072b2"
+set label 3 "lattice" at screen 0.56,0.025 point linestyle 3 offset 1,0 textcolor rgb "#009e73"
 do for [k = 1:words(scenes)] {
   set title word(scenes, k) font ",13" offset 0,-0.7 noenhanced
   if (k > (lines - 1) * columns) { set xlabel "subrays" offset 0,0.6 } else { unset xlabel }
   if (k % columns == 1) { set ylabel "score [mm an echo]" offset 1.5,0 } else { unset ylabel }
-  if (k == words(scenes)) { set key at screen 0.5,0.025 center center horizontal maxrows 1 Left reverse font ",12" samplen 3 width 2 }
-  plot for [i = 1:3] rows(word(scenes, k), word(kinds, i)) using 3:4 with linespoints linestyle i title word(kinds, i), \
-       for [i = 1:3] rows(word(scenes, k), word(kinds, i)) using 3:4:5:6 with yerrorbars linestyle i notitle
+  plot for [i = 1:3] rows(word(scenes, k), word(kinds, i)) using 3:4 with linespoints linestyle i, \
+       for [i = 1:3] rows(word(scenes, k), word(kinds, i)) using 3:4:5:6 with yerrorbars linestyle i
+  unset label
 }
 unset multiplot
