@@ -3,7 +3,7 @@
 # SPDX-License-Identifier: MIT
 
 # Takes the figures of docs/tables/tradeoff.md anew by bench_tradeoff of a build, and draws docs/pictures/tradeoff.svg with
-# gnuplot (Debian package: gnuplot-nox). Takes some ten minutes; nothing else should run. Only times depend on the machine.
+# gnuplot (Debian package: gnuplot-nox). Takes some seven minutes; nothing else should run. Only times depend on the machine.
 # Usage: tradeoff.sh [BUILD [OPTION]...]; build/release if not told. Options go to bench_tradeoff, as `--only facade`, to
 # try something out: then the tables are printed, and page and picture stay as they are.
 set -euo pipefail
