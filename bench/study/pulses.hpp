@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
@@ -29,6 +30,16 @@ class Pulses {
   [[nodiscard]] std::vector<Emitter> emitters() const { return emitters_; }
   [[nodiscard]] std::optional<Pulse<frame::World>> pulse(PulseIndex i) const noexcept { return (*all_)[i]; }
 
+  /// The same, each rolled about its axis by a random angle.
+  [[nodiscard]] Pulses rolled(std::uint64_t seed) const {
+    std::vector<Pulse<frame::World>> all = *all_;
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      const double turn = 2 * pi * uniform({.seed = seed, .pulse = i, .subray = 0, .purpose = Purpose{128}});
+      all[i].pose.rotation = all[i].pose.rotation * rotation_about(axis::forward, turn);
+    }
+    return {std::move(all), emitters_};
+  }
+
  private:
   std::shared_ptr<const std::vector<Pulse<frame::World>>> all_ =
       std::make_shared<const std::vector<Pulse<frame::World>>>();
@@ -37,28 +48,19 @@ class Pulses {
 
 static_assert(WorldSource<Pulses>);
 
-/// Consecutive slots, as in a survey, so that pulses share the contents of the caches.
-inline constexpr std::size_t run_length = 32;
-
-/// As many pulses of a survey: runs from everywhere in it, of those slots with a pulse for which `wanted` is true.
+/// Runs of slots that follow each other, from everywhere in a survey: `each` slots with a pulse for which `wanted` is
+/// true.
 template <WorldSource Source, class Wanted>
-[[nodiscard]] Pulses sampled(const Source& source, std::size_t count, Wanted wanted) {
-  std::vector<Pulse<frame::World>> all;
-  const std::size_t runs = count / run_length;
+[[nodiscard]] std::vector<Pulses> runs_of(const Source& source, std::size_t runs, std::size_t each, Wanted wanted) {
+  std::vector<Pulses> all;
   for (std::size_t run = 0; run < runs; ++run) {
+    std::vector<Pulse<frame::World>> pulses;
     const PulseIndex end = source.size() * (run + 1) / runs;
-    for (PulseIndex i = source.size() * run / runs; i < end && all.size() < (run + 1) * run_length; ++i) {
-      const auto pulse = source.pulse(i);
-      if (!pulse || !wanted(*pulse)) continue;
-      all.push_back(*pulse);
-    }
+    for (PulseIndex i = source.size() * run / runs; i < end && pulses.size() < each; ++i)
+      if (const auto pulse = source.pulse(i); pulse && wanted(*pulse)) pulses.push_back(*pulse);
+    if (!pulses.empty()) all.emplace_back(std::move(pulses), source.emitters());
   }
-  return Pulses(std::move(all), source.emitters());
-}
-
-template <WorldSource Source>
-[[nodiscard]] Pulses sampled(const Source& source, std::size_t count) {
-  return sampled(source, count, [](const Pulse<frame::World>&) { return true; });
+  return all;
 }
 
 /// Any footprint, copied: all kinds are one type.
@@ -76,14 +78,6 @@ class Pattern {
   [[nodiscard]] std::size_t size() const noexcept { return offsets_.size(); }
   [[nodiscard]] Vec2 offset(std::size_t j) const noexcept { return offsets_[j]; }
   [[nodiscard]] double share(std::size_t j) const noexcept { return shares_[j]; }
-
-  /// The same, turned about the axis [rad].
-  [[nodiscard]] Pattern turned(double angle) const {
-    Pattern other = *this;
-    const double c = std::cos(angle), s = std::sin(angle);
-    for (Vec2& offset : other.offsets_) offset = {c * offset.x - s * offset.y, s * offset.x + c * offset.y};
-    return other;
-  }
 
  private:
   std::string kind_;

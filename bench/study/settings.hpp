@@ -2,173 +2,195 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <cstdio>
 #include <functional>
-#include <memory>
 #include <string>
 #include <utility>
-#include <variant>
 #include <vector>
 
 #include <pulsecast/detector/analytic_waveform.hpp>
-#include <pulsecast/detector/gaussian_fit.hpp>
+#include <pulsecast/detector/band_limited_receiver.hpp>
 #include <pulsecast/pulsecast.hpp>
+#include <pulsecast/transport/light_paths.hpp>
 
 #include "../report.hpp"
-#include "errors.hpp"
-#include "scenarios.hpp"
+#include "scenes.hpp"
+#include "score.hpp"
 
-/// The knobs, and what is measured of a setting of all of them.
+/// Settings that are compared: the library's defaults with one knob turned, and those of XML surveys.
 namespace tradeoff {
 
-enum class Width : std::uint8_t { none, moments, fit };
+enum class DetectorKind : std::uint8_t { sampled, analytic, first_hit, received };
 
 struct Setting {
-  std::string knob;   ///< the one that is not at its default; `both` for subrays and bins
-  std::string value;  ///< where it stands
+  std::string name;
   Pattern footprint = lattice(19);
-  double bin = 0.25e-9;  ///< 0 for the analytic detector [s]
-  Width width = Width::none;
-  Map map{};
-  std::size_t stride = 1;  ///< every which pulse is sent
-  bool comparable = true;  ///< does the whole work on the whole scene: may be on the front
-  bool is_default = false;
+  DetectorKind detector = DetectorKind::sampled;
+  double bin = 1.0 / 16;  ///< 0.25 ns of a pulse of 4 ns [pulse lengths]
+  bool xml = false;       ///< echoes by the definition of XML surveys, and so the truth
+  bool spread = true;     ///< light over smooth surfaces
+  bool exact = false;     ///< traversed in `double`, in scenes that have such a map
+  bool turned = false;    ///< by a random angle for each pulse
+  double bandwidth = 0;   ///< of `received`, times the pulse length; 0 for that of the pulse
+  bool noisy = false;     ///< of `received`: noise a tenth of the threshold before the filter
+  double prominence = 0;  ///< of the threshold
 };
 
-[[nodiscard]] inline std::string text_of(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%g", value);
-  return text;
+/// Definitions of an echo: the library's, and that of XML surveys, which take peaks where light is followed.
+[[nodiscard]] inline EchoRule rule_of(const Scenario& scenario, bool xml) {
+  return xml ? EchoRule{.divisor = 3.5, .window = 0.5, .by_mean = !scenario.follows_light} : EchoRule{};
 }
 
-[[nodiscard]] inline std::string bin_name(double bin) { return bin == 0 ? "analytic" : text_of(bin * 1e9) + " ns"; }
-
-/// Every setting of a scenario that is measured, the default first.
-[[nodiscard]] inline std::vector<Setting> settings_for(const Scenario& scenario) {
-  std::vector<Setting> all{{.knob = "default", .value = "", .map = scenario.map, .is_default = true}};
-  all[0].value =
-      all[0].footprint.kind() + " " + std::to_string(all[0].footprint.size()) + " (" + bin_name(all[0].bin) + ")";
-  const auto add = [&](const std::string& knob, const std::string& value, auto change) {
-    Setting setting = all[0];
-    setting.knob = knob;
-    setting.value = value;
-    setting.is_default = false;
-    change(setting);
-    all.push_back(std::move(setting));
-  };
-  std::vector<Pattern> patterns;
-  for (std::size_t circles = 1; circles <= 10; ++circles) patterns.push_back(rings(circles));
-  const std::size_t as_many[]{1,  3,  4,  7,  9,  13,  18,
-                              19, 31, 37, 62, 93, 130, 279};  // as in rings, and half as many as in the first ones
-  for (const std::size_t subrays : as_many)
-    for (const Pattern& pattern : {sunflower(subrays), lattice(subrays)}) patterns.push_back(pattern);
-  for (const Pattern& pattern : patterns)
-    add("subrays", pattern.kind() + " " + std::to_string(pattern.size()), [&](Setting& s) { s.footprint = pattern; });
-  if (scenario.turned)
-    for (const Pattern& pattern : {rings(2), rings(3), rings(4), sunflower(9), sunflower(13), sunflower(19), lattice(9),
-                                   lattice(13), lattice(19)})
-      add("turned", pattern.kind() + " " + std::to_string(pattern.size()), [&](Setting& s) {
-        s.footprint = pattern.turned(30_deg);
-        s.comparable = false;
-      });
-
-  add("precision", "double", [&](Setting& s) { s.map = scenario.exact; });
-  for (const double bin : {0.05e-9, 0.1e-9, 0.5e-9, 1e-9, 2e-9, 0.0})
-    add("bins", bin_name(bin), [&](Setting& s) { s.bin = bin; });
-  for (const std::size_t subrays : {1U, 4U, 7U, 37U, 62U})
-    for (const double bin : {0.1e-9, 0.5e-9, 1e-9, 0.0})
-      add("both", "lattice " + std::to_string(subrays) + " (" + bin_name(bin) + ")", [&](Setting& s) {
-        s.footprint = lattice(subrays);
-        s.bin = bin;
-      });
-  for (const double bin : {0.25e-9, 0.0})
-    for (const Width width : {Width::moments, Width::fit})
-      add("width", std::string(width == Width::fit ? "fit" : "moments") + " (" + bin_name(bin) + ")", [&](Setting& s) {
-        s.width = width;
-        s.bin = bin;
-        s.comparable = false;
-      });
-  for (const Form& form : scenario.forms)
-    add("form", form.name, [&](Setting& s) {
-      s.map = form.map;
-      s.comparable = false;
-    });
-  for (const std::size_t stride : {2U, 4U, 8U, 16U})
-    add("preview", "every " + std::to_string(stride), [&](Setting& s) {
-      s.stride = stride;
-      s.comparable = false;
-    });
+/// All settings, the default first.
+[[nodiscard]] inline std::vector<Setting> all_settings() {
+  std::vector<Setting> all{{.name = "lattice 19"}};
+  for (const std::size_t n : {1U, 3U, 7U, 9U, 13U, 37U, 61U, 127U})
+    all.push_back({"lattice " + std::to_string(n), lattice(n)});
+  for (const std::size_t n : {7U, 19U, 37U, 127U}) all.push_back({"sunflower " + std::to_string(n), sunflower(n)});
+  for (const std::size_t circles : {2U, 3U, 4U, 7U}) {
+    const Pattern pattern = rings(circles);
+    all.push_back({"rings " + std::to_string(pattern.size()), pattern});
+  }
+  all.push_back({.name = "lattice 19, turned", .turned = true});
+  all.push_back({"single ray, first hit", lattice(1), DetectorKind::first_hit});
+  for (const double bins : {80, 40, 8, 4, 2})
+    all.push_back({.name = "bins of 1/" + std::to_string(static_cast<int>(bins)) + " pulse", .bin = 1 / bins});
+  for (const std::size_t n : {7U, 19U, 37U, 127U})
+    all.push_back({"analytic, lattice " + std::to_string(n), lattice(n), DetectorKind::analytic});
+  all.push_back({.name = "prominence of the threshold", .prominence = 1});
+  all.push_back({.name = "without spread", .spread = false});
+  all.push_back({.name = "traversal in double", .exact = true});
+  all.push_back({.name = "XML: rings 19, mean range", .footprint = rings(3), .xml = true});
+  all.push_back({"receiver: bandwidth, rings 19 of whole moments",
+                 {"rings", RingFootprint(3, RingMoments::whole)},
+                 DetectorKind::received});
+  all.push_back({.name = "receiver: bandwidth", .detector = DetectorKind::received});
+  all.push_back({.name = "receiver: and noise", .detector = DetectorKind::received, .noisy = true});
+  all.push_back(
+      {.name = "receiver: noise, prominence", .detector = DetectorKind::received, .noisy = true, .prominence = 1});
+  all.push_back({.name = "receiver: noise, 8 times the bandwidth",
+                 .detector = DetectorKind::received,
+                 .bandwidth = 8 * 0.44,
+                 .noisy = true});
   return all;
 }
 
-/// Calls a function with the detector of a setting.
+/// Far finer than any setting, for scenes without a truth.
+[[nodiscard]] inline Setting reference(bool xml, const Pattern& pattern) {
+  return {"reference", pattern, DetectorKind::analytic, 1.0 / 16, xml};
+}
+
+/// Calls a function with the survey of a setting over a cluster.
 template <class Function>
-auto with_detector(double bin, Width width, double threshold, Function function) {
-  // by true ranges, and with the divisor of the peer: the study measures the cost of sampling, not the effects of
-  // receivers
-  WaveformSettings settings{.threshold = threshold, .timing = EchoTiming::true_range, .shape_divisor = 3.5};
-  if (bin > 0) settings.sample_interval = bin;
-  const auto with_width = [&](auto measure) {
-    using Measure = decltype(measure);
-    return bin > 0 ? function(FullWaveform<Measure>(settings)) : function(AnalyticWaveform<Measure>(settings));
+auto with_survey(const Scenario& scenario, const Cluster& cluster, const Setting& setting, const Function& function) {
+  const Instrument& instrument = scenario.instrument;
+  const double pulse = instrument.laser.pulse_length;
+  const EchoRule rule = rule_of(scenario, setting.xml);
+  const auto seed = static_cast<std::uint64_t>(&cluster - scenario.clusters.data());
+  WaveformSettings settings{.sample_interval = setting.bin * pulse,
+                            .threshold = instrument.threshold,
+                            .prominence = setting.prominence * instrument.threshold,
+                            .window = rule.window * pulse,
+                            .returns_max = 255,
+                            .timing = rule.by_mean ? EchoTiming::true_range : EchoTiming::peak,
+                            .shape_divisor = rule.divisor};
+  const Receiver receiver{.diameter = instrument.diameter,
+                          .efficiency = instrument.efficiency,
+                          .visibility = std::numeric_limits<double>::infinity(),
+                          .range_min = scenario.gate.near,
+                          .range_max = scenario.gate.far};
+  const auto over = [&](const auto& map, const auto& light) {
+    const auto with = [&](const auto& detector) {
+      return function(Survey(setting.turned ? cluster.pulses.rolled(seed) : cluster.pulses, setting.footprint, map,
+                             light, receiver, detector, seed));
+    };
+    switch (setting.detector) {
+      case DetectorKind::analytic:
+        return with(AnalyticWaveform<>(settings));
+      case DetectorKind::first_hit:
+        return with(FirstHit{});
+      case DetectorKind::received: {
+        ReceiverChain chain{.bandwidth = setting.bandwidth / pulse};
+        if (setting.noisy)
+          chain.noise_power = instrument.threshold / 10 / std::sqrt(chain.filter(pulse).noise_bandwidth());
+        return with(FullWaveform<NoWidth, BandLimitedReceiver<>>(settings, {}, BandLimitedReceiver<>(chain)));
+      }
+      default:
+        return with(FullWaveform<>(settings));
+    }
   };
-  switch (width) {
-    case Width::moments:
-      return with_width(MomentWidth{});
-    case Width::fit:
-      return with_width(GaussianFit{});
-    default:
-      return with_width(NoWidth{});
-  }
+  const Fog& fog = scenario.fog;
+  if (setting.exact) return over(*cluster.exact, DirectLight{setting.spread});
+  const Scene<Mesh>& map = *cluster.map;
+  if (!scenario.follows_light) return over(map, DirectLight{setting.spread});
+  LightPaths light{.spread_planes = setting.spread};
+  if (fog.to > fog.from)
+    light.air = Media({{.medium = {.scattering = fog.extinction, .backscatter = fog.backscatter},
+                        .bounds = {{-1e3, fog.from, -1e3}, {1e3, fog.to, 1e3}}}});
+  return over(map, light);
 }
 
-/// Results of a setting. Widths are always measured, as they do not change the echoes.
+/// Echoes of all pulses of a scenario, cluster by cluster.
+using Results = std::vector<std::vector<Points>>;
+
 [[nodiscard]] inline Results results_of(const Scenario& scenario, const Setting& setting) {
-  const Width width = setting.width == Width::fit ? Width::fit : Width::moments;
-  return std::visit(
-      [&](const auto& map) {
-        return with_detector(setting.bin, width, scenario.threshold, [&](const auto& detector) {
-          return results_of(Survey(scenario.pulses, WithSubrayRecord(setting.footprint), *map, Receiver{}, detector, 1),
-                            setting.footprint);
-        });
-      },
-      setting.map);
+  Results all;
+  for (const Cluster& cluster : scenario.clusters)
+    all.push_back(with_survey(scenario, cluster, setting, [](const auto& survey) {
+      std::vector<Points> found;
+      auto workspace = survey.workspace();
+      for (PulseIndex i = 0; i < survey.size(); ++i) {
+        Points points;
+        for (const Echo& echo : survey(i, workspace).echoes) points.push_back({echo.range, echo.reflectance});
+        found.push_back(std::move(points));
+      }
+      return found;
+    }));
+  return all;
 }
 
-/// A go of a setting through runs of the pulses of a scenario, fewer where one takes long; and how many pulses that
-/// are.
-struct Work {
-  std::function<void()> go;
-  std::size_t pulses;
-};
-[[nodiscard]] inline Work work_of(const Scenario& scenario, const Setting& setting) {
-  const std::size_t every = 4 * (1 + setting.footprint.size() / 40);
+/// The truth of all pulses by a quadrature of so many points, of even planes four times as many, by both definitions.
+[[nodiscard]] inline std::array<Results, 2> truth_of(const Scenario& scenario, std::size_t points) {
+  std::array<Results, 2> all;
+  all.fill(Results(scenario.clusters.size()));
+  const auto& surfaces = scenario.clusters.front().surfaces;
+  const auto* only = surfaces.size() == 1 ? std::get_if<Plane>(&surfaces.front()) : nullptr;
+  const bool edges = !only || only->beyond > 0;
+  const std::vector<Place> places = quadrature(edges ? points : 4 * points, edges);
+  for (std::size_t c = 0; c < scenario.clusters.size(); ++c)
+    for (const Axes& axes : scenario.clusters[c].axes) {
+      const Lit lit = light_of(scenario.clusters[c].surfaces, scenario.fog, scenario.instrument, axes, places);
+      for (const bool xml : {false, true})
+        all[xml][c].push_back(echoes_of(lit, scenario.instrument, rule_of(scenario, xml)));
+    }
+  return all;
+}
+
+inline constexpr std::size_t timed_every = 16;  ///< clusters, of which one is timed
+
+[[nodiscard]] inline std::size_t timed_pulses(const Scenario& scenario) {
   std::size_t pulses = 0;
-  for (std::size_t run = 0; run < scenario.pulses.size(); run += every * run_length)
-    pulses += std::min(run_length, scenario.pulses.size() - run);
-  return {std::visit(
-              [&](const auto& map) {
-                return with_detector(setting.bin, setting.width, scenario.threshold, [&](const auto& detector) {
-                  const Survey survey(scenario.pulses, setting.footprint, *map, Receiver{}, detector, 1);
-                  return std::function<void()>([survey, every, map, workspace = survey.workspace()]() mutable {
-                    std::size_t echoes = 0;
-                    for (PulseIndex run = 0; run < survey.size(); run += every * run_length)
-                      for (PulseIndex i = run; i < std::min(run + run_length, survey.size()); ++i)
-                        echoes += survey(i, workspace).echoes.size();
-                    bench::keep(echoes);
-                  });
-                });
-              },
-              setting.map),
-          pulses};
+  for (std::size_t c = 0; c < scenario.clusters.size(); c += timed_every) pulses += scenario.clusters[c].pulses.size();
+  return pulses;
 }
 
-[[nodiscard]] inline std::size_t memory_of(const Map& map) {
-  return std::visit([](const auto& scene) { return scene->memory(); }, map);
+/// A go of a setting through the pulses that are timed.
+[[nodiscard]] inline std::function<void()> work_of(const Scenario& scenario, const Setting& setting) {
+  std::vector<std::function<void()>> works;
+  for (std::size_t c = 0; c < scenario.clusters.size(); c += timed_every)
+    works.push_back(with_survey(scenario, scenario.clusters[c], setting, [](const auto& survey) {
+      return std::function<void()>([survey, workspace = survey.workspace()]() mutable {
+        std::size_t echoes = 0;
+        for (PulseIndex i = 0; i < survey.size(); ++i) echoes += survey(i, workspace).echoes.size();
+        bench::keep(echoes);
+      });
+    }));
+  return [works = std::move(works)] {
+    for (const auto& work : works) work();
+  };
 }
 
 }  // namespace tradeoff

@@ -1,235 +1,310 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
 
-// Cost and errors of each setting: time, memory, and errors against a reference of 2,001 subrays, double precision and
-// the analytic detector, on the same pulses of six scenarios. One knob at a time from the default, and subrays by bins.
-// Rows are named scenario/knob/value. Errors have intervals of 95 %, by bootstrap over runs of pulses.
-// `bench/study/tradeoff.sh` runs it, draws docs/pictures/tradeoff_*.svg, and writes docs/tables/tradeoff.md.
-// Files on the command line: where a CSV file of all settings, and one of footprints on edges and wires, are left.
+// Errors and times of settings: the library's defaults, each knob turned, and XML surveys, in scenes with a truth of
+// their own, and in ones with a reference. Prints the tables of docs/tables/tradeoff.md, which docs/tradeoff.md
+// explains; `bench/study/tradeoff.sh` renews it. A file on the command line takes the scores by numbers of subrays as
+// CSV.
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdio>
-#include <cstdlib>
 #include <functional>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include <pulsecast/pulsecast.hpp>
-
 #include "../report.hpp"
-#include "errors.hpp"
-#include "precision.hpp"
-#include "pulses.hpp"
-#include "quadrature.hpp"
-#include "scenarios.hpp"
+#include "places.hpp"
 #include "settings.hpp"
 
 using namespace tradeoff;
 
 namespace {
 
-constexpr std::size_t pulse_count = 16'384;
-constexpr double mebibyte = 1 << 20;
+constexpr std::size_t dense = 100'000;  // points of the quadrature
 
-/// A setting, and what it costs and buys.
-struct Point {
+/// A setting in a scene, and what was found.
+struct Row {
   Setting setting;
-  double seconds = 0;  ///< of the thread, for a pulse of the survey
-  double memory = 0;   ///< of the scene [MiB]
-  Errors errors{};
-  Intervals intervals{};           ///< of the errors that are drawn
-  std::array<bool, 3> on_front{};  ///< by range, by echoes missed and invented, by intensity
+  Clusters clusters{};
+  std::vector<double> sizes{};   ///< of the errors of ranges [m]
+  std::vector<double> scores{};  ///< of all clusters, and of each draw [m]
+  bench::Times times{};          ///< round by round; empty if not measured [s]
 };
 
-/// Marks the points that no other one outdoes in time without being outdone in the error.
-void find_fronts(std::vector<Point>& points) {
-  for (std::size_t by = 0; by < 3; ++by)
-    for (Point& point : points) {
-      const auto outdoes = [&](const Point& other) {
-        const double error = point.errors.drawn()[by], theirs = other.errors.drawn()[by];
-        return other.setting.comparable && other.seconds <= point.seconds && theirs <= error &&
-               (other.seconds < point.seconds || theirs < error);
-      };
-      point.on_front[by] = point.setting.comparable && std::none_of(points.begin(), points.end(), outdoes);
-    }
+/// A scene with its settings, as claims need them.
+struct Measured {
+  std::string name;
+  bool held_out;
+  double resolution;
+  std::vector<Row> rows;
+
+  [[nodiscard]] const Row* find(const std::string& setting) const {
+    const auto at = std::find_if(rows.begin(), rows.end(), [&](const Row& r) { return r.setting.name == setting; });
+    return at == rows.end() ? nullptr : &*at;
+  }
+};
+
+Row compared(const Setting& setting, const Results& truth, const Results& found, double resolution) {
+  Row row{setting};
+  for (std::size_t c = 0; c < truth.size(); ++c) {
+    row.clusters.emplace_back();
+    for (std::size_t i = 0; i < truth[c].size(); ++i)
+      row.clusters.back().add(truth[c][i], found[c][i], resolution, row.sizes);
+  }
+  return row;
 }
 
-std::vector<Point> measure(const bench::Report& report, const Scenario& scenario, const Bootstrap& bootstrap) {
-  Setting reference{.knob = "reference", .value = "", .footprint = sunflower(2001), .bin = 0, .map = scenario.exact};
-  const Results with_moments = results_of(scenario, reference);
-  reference.width = Width::fit;
-  const Results with_fit = results_of(scenario, reference);
-  std::fprintf(stderr, "  %zu pulses, %zu echoes in the reference\n", with_moments.pulses(),
-               with_moments.echoes.size());
-  const auto canopy_of = [&](const Results& results, std::size_t stride) {
-    return scenario.ground ? canopy(results, scenario.pulses, scenario.ground, stride) : Canopy{};
-  };
-  const Canopy true_canopy = canopy_of(with_moments, 1);
+/// Ratios of two scores, draw by draw. A millionth of the resolution is added: two settings without errors are alike.
+std::vector<double> ratios(const Row& a, const Row& b, double resolution) {
+  std::vector<double> all;
+  for (std::size_t d = 0; d < a.scores.size(); ++d)
+    all.push_back((a.scores[d] + 1e-6 * resolution) / (b.scores[d] + 1e-6 * resolution));
+  return all;
+}
+std::vector<double> time_ratios(const Row& a, const Row& b) {
+  std::vector<double> all;
+  for (std::size_t r = 0; r < std::min(a.times.size(), b.times.size()); ++r) all.push_back(a.times[r] / b.times[r]);
+  return all;
+}
 
-  std::vector<Point> points;
+/// A figure to three digits.
+std::string rounded(double x) {
+  if (std::isnan(x)) return "";
+  const double size = std::fabs(x);
+  char text[64];
+  std::snprintf(text, sizeof text, "%.*f",
+                size >= 100 || size < 5e-5 ? 0
+                : size >= 10               ? 1
+                : size >= 1                ? 2
+                : size >= 0.01             ? 3
+                                           : 4,
+                x);
+  return text;
+}
+std::string shown(const Interval& i, double unit = 1) {
+  if (std::isnan(i.middle)) return "";
+  return rounded(unit * i.middle) + " [" + rounded(unit * i.low) + ", " + rounded(unit * i.high) + "]";
+}
+std::string shown_median(const std::vector<double>& repeated) {
+  return repeated.empty() ? "" : shown(median_of(repeated));
+}
+
+void print_heading(const std::string& title, const std::vector<std::string>& columns) {
+  std::printf("\n## %s\n\n|", title.c_str());
+  for (const auto& column : columns) std::printf(" %s |", column.c_str());
+  std::printf("\n|");
+  for (std::size_t k = 0; k < columns.size(); ++k) std::printf("---|");
+  std::printf("\n");
+}
+
+void print(const Row& row, const Row& standard, double resolution) {
+  Sums all;
+  for (const Sums& sums : row.clusters) all.add(sums, 1);
+  std::printf(
+      "| %s | %s | %s | %s | %s | %s | %s | %s | %s |\n", row.setting.name.c_str(), rounded(1e3 * all.range()).c_str(),
+      rounded(1e3 * percentile(row.sizes, 0.95)).c_str(), rounded(100 * all.lost / all.echoes).c_str(),
+      rounded(100 * all.invented / all.echoes).c_str(), rounded(all.intensity()).c_str(),
+      shown(interval_of(row.scores), 1e3).c_str(),
+      &row == &standard || row.clusters.empty() ? "" : shown(interval_of(ratios(row, standard, resolution))).c_str(),
+      &row == &standard ? "" : shown_median(time_ratios(row, standard)).c_str());
+  std::fflush(stdout);
+}
+
+Measured measure(const bench::Report& report, const Scenario& scenario, std::uint32_t number) {
+  const double resolution = scenario.instrument.resolution();
+  const Bootstrap bootstrap(scenario.clusters.size(), number);
+  const auto scored = [&](Row row) {
+    row.scores = bootstrap(row.clusters, [](const Sums& s) { return s.score(); });
+    return row;
+  };
+  std::array<Results, 2> truth, other;
+  if (scenario.has_truth()) {
+    truth = truth_of(scenario, dense);
+    other = truth_of(scenario, dense / 4);
+  } else {
+    truth = {results_of(scenario, reference(false, sunflower(2001))),
+             results_of(scenario, reference(true, sunflower(2001)))};
+    other[0] = results_of(scenario, reference(false, lattice(1999)));
+  }
+  Measured found{scenario.name, scenario.held_out, resolution, {}};
   std::vector<std::function<void()>> works;
-  std::vector<std::size_t> pulses;
-  for (const Setting& setting : settings_for(scenario)) {
-    Point point{.setting = setting, .memory = static_cast<double>(memory_of(setting.map)) / mebibyte};
-    const Results found = results_of(scenario, setting);
-    if (setting.stride == 1) {
-      point.errors = compare(setting.width == Width::fit ? with_fit : with_moments, found, scenario.gate);
-      point.intervals = bootstrap.of(point.errors.blocks);
-    } else {
-      point.errors.echoes = forecast_error(found, setting.stride);
-    }
-    compare(true_canopy, canopy_of(found, setting.stride), point.errors);
-    if (setting.stride == 1) {
-      Work work = work_of(scenario, setting);
-      works.push_back(std::move(work.go));
-      pulses.push_back(work.pulses);
-    }
-    points.push_back(std::move(point));
+  for (const Setting& setting : all_settings()) {
+    if (setting.exact && !scenario.clusters.front().exact) continue;
+    found.rows.push_back(scored(compared(setting, truth[setting.xml], results_of(scenario, setting), resolution)));
+    works.push_back(work_of(scenario, setting));
   }
-  std::fprintf(stderr, "  %zu settings compared; timing %zu by turns\n", points.size(), works.size());
   const std::vector<bench::Times> times = report.by_turns(works);
-  for (std::size_t i = 0; i < times.size(); ++i)
-    points[i].seconds = bench::median(times[i]) / static_cast<double>(pulses[i]);
-  for (Point& point : points)
-    if (point.setting.stride > 1) point.seconds = points[0].seconds / static_cast<double>(point.setting.stride);
-  find_fronts(points);
-  return points;
+  for (std::size_t i = 0; i < times.size(); ++i) found.rows[i].times = times[i];
+
+  std::size_t echoes = 0, pulses = 0;
+  for (const auto& cluster : truth[0]) {
+    pulses += cluster.size();
+    for (const Points& points : cluster) echoes += points.size();
+  }
+  print_heading("`" + scenario.name + "`: " + scenario.title,
+                {"setting", "range: rms, mm", "95 % within, mm", "lost, %", "invented, %", "intensity, %",
+                 "score, mm an echo", "score by default", "time by default"});
+  const Row& standard = found.rows.front();
+  print(
+      scored(compared({scenario.has_truth() ? "*truth of a quarter of the points*" : "*reference of another pattern*"},
+                      truth[0], other[0], resolution)),
+      standard, resolution);
+  print(scored(compared({"*definition of XML surveys*"}, truth[0], truth[1], resolution)), standard, resolution);
+  for (const Row& row : found.rows) print(row, standard, resolution);
+  std::printf("\n%zu pulses with %zu echoes by the %s; by default %s us a pulse; for %s.\n", pulses, echoes,
+              scenario.has_truth() ? "truth" : "reference",
+              rounded(1e6 * bench::median(standard.times) / static_cast<double>(timed_pulses(scenario))).c_str(),
+              scenario.held_out ? "showing" : "choosing");
+  return found;
 }
 
-void write_csv(std::FILE* out, const Scenario& scenario, const std::vector<Point>& points) {
-  for (const Point& p : points) {
-    const Setting& s = p.setting;
-    const Errors& e = p.errors;
-    std::fprintf(out, "%s,%s,%s,%s,%zu,%s,%d,", scenario.name.c_str(), s.knob.c_str(), s.value.c_str(),
-                 s.footprint.kind().c_str(), s.footprint.size(), bin_name(s.bin).c_str(), s.comparable ? 1 : 0);
-    const double figures[]{1e9 * p.seconds,      1 / p.seconds,         p.memory,         1e3 * e.range_bias,
-                           1e3 * e.range_spread, 1e3 * e.range_rms,     1e3 * e.range_95, e.missed,
-                           e.invented,           e.missed + e.invented, e.intensity_bias, e.intensity,
-                           1e12 * e.width_bias,  1e12 * e.width,        e.echoes,         e.gap_fraction,
-                           e.height_50,          e.height_95,           e.height_99};
-    for (const double figure : figures) std::fprintf(out, "%.5g,", figure);
-    std::fprintf(out, "%d,%d,%d", p.on_front[0] ? 1 : 0, p.on_front[1] ? 1 : 0, p.on_front[2] ? 1 : 0);
-    for (std::size_t k = 0; k < 3; ++k) {
-      const double unit = k == 0 ? 1e3 : 1;
-      std::fprintf(out, ",%.5g,%.5g", unit * p.intervals[k].low, unit * p.intervals[k].high);
+/// A setting by another one, over the scenes of one half: the geometric mean of the ratios of their scores.
+Interval pooled(const std::vector<Measured>& scenes, bool held_out, const std::string& a, const std::string& b) {
+  std::vector<double> logs(Bootstrap::draws + 1);
+  double number = 0;
+  for (const Measured& scene : scenes) {
+    const Row *one = scene.find(a), *other = scene.find(b);
+    if (scene.held_out != held_out || !one || !other) continue;
+    const std::vector<double> all = ratios(*one, *other, scene.resolution);
+    for (std::size_t d = 0; d < all.size(); ++d) logs[d] += std::log(all[d]);
+    number += 1;
+  }
+  for (double& log : logs) log = std::exp(log / number);
+  return interval_of(logs);
+}
+std::vector<double> pooled_times(const std::vector<Measured>& scenes, const std::string& a, const std::string& b) {
+  std::vector<double> logs;
+  double number = 0;
+  for (const Measured& scene : scenes) {
+    const Row *one = scene.find(a), *other = scene.find(b);
+    if (!one || !other) continue;
+    const std::vector<double> all = time_ratios(*one, *other);
+    logs.resize(all.size());
+    for (std::size_t r = 0; r < all.size(); ++r) logs[r] += std::log(all[r]);
+    number += 1;
+  }
+  for (double& log : logs) log = std::exp(log / number);
+  return logs;
+}
+
+void print_claims(const std::vector<Measured>& scenes) {
+  print_heading("Claims", {"setting", "by", "score: scenes for choosing", "held-out scenes", "claim",
+                           "scenes better, worse", "time: all scenes"});
+  const std::pair<std::string, std::string> pairs[]{{"lattice 19", "rings 19"},
+                                                    {"lattice 19", "sunflower 19"},
+                                                    {"lattice 7", "rings 7"},
+                                                    {"lattice 9", "rings 19"},
+                                                    {"rings 37", "rings 19"},
+                                                    {"rings 130", "rings 37"},
+                                                    {"lattice 37", "rings 37"},
+                                                    {"lattice 19", "rings 37"},
+                                                    {"lattice 127", "rings 130"},
+                                                    {"lattice 19, turned", "lattice 19"},
+                                                    {"lattice 3", "lattice 1"},
+                                                    {"lattice 7", "lattice 1"},
+                                                    {"lattice 19", "lattice 7"},
+                                                    {"lattice 37", "lattice 19"},
+                                                    {"lattice 127", "lattice 37"},
+                                                    {"lattice 1", "single ray, first hit"},
+                                                    {"analytic, lattice 7", "lattice 7"},
+                                                    {"analytic, lattice 19", "lattice 19"},
+                                                    {"analytic, lattice 37", "lattice 37"},
+                                                    {"analytic, lattice 127", "lattice 127"},
+                                                    {"bins of 1/40 pulse", "lattice 19"},
+                                                    {"lattice 19", "bins of 1/8 pulse"},
+                                                    {"bins of 1/8 pulse", "bins of 1/4 pulse"},
+                                                    {"bins of 1/4 pulse", "bins of 1/2 pulse"},
+                                                    {"lattice 19", "without spread"},
+                                                    {"lattice 19", "prominence of the threshold"},
+                                                    {"lattice 19", "XML: rings 19, mean range"},
+                                                    {"receiver: noise, prominence", "receiver: and noise"},
+                                                    {"receiver: and noise", "receiver: noise, 8 times the bandwidth"},
+                                                    {"lattice 19", "traversal in double"}};
+  for (const auto& [a, b] : pairs) {
+    const Interval chosen = pooled(scenes, false, a, b), shown_on = pooled(scenes, true, a, b);
+    int better = 0, worse = 0;
+    for (const Measured& scene : scenes)
+      if (const Row* one = scene.find(a), *other = scene.find(b); one && other) {
+        const Interval here = interval_of(ratios(*one, *other, scene.resolution));
+        better += here.less() ? 1 : 0;
+        worse += here.more() ? 1 : 0;
+      }
+    const char* claim = chosen.less() && shown_on.less()   ? "better"
+                        : chosen.more() && shown_on.more() ? "worse"
+                                                           : "none";
+    std::printf("| %s | %s | %s | %s | %s | %d, %d | %s |\n", a.c_str(), b.c_str(), shown(chosen).c_str(),
+                shown(shown_on).c_str(), claim, better, worse, shown_median(pooled_times(scenes, a, b)).c_str());
+  }
+}
+
+/// The steps at other places and sizes, by the analytic detector: the same echoes, to rounding.
+void print_extremes() {
+  print_heading("Extremes: `step` at other places and of other sizes",
+                {"scene", "traversal", "lost, invented, %", "score, 1/1000 of the resolution",
+                 "echoes more or less than here", "largest difference from here, nm of 60 cm"});
+  const Frame frames[]{{}, {.place = {512'000, 5'403'000, 300}}, {.place = {1e7, 1e7, 1e7}}, {.scale = 1e-6}, {}};
+  const char* names[]{"1,000 m away, at the origin", "at UTM coordinates", "17,000 km from the origin",
+                      "1 mm away: steps of 50 to 600 nm, pulses of 4 fs", "400 km away"};
+  Results first;
+  for (std::size_t k = 0; k < std::size(frames); ++k) {
+    Scenario scenario = steps("step", frames[k], k == 4 ? 400e3 : 1000);
+    const double resolution = scenario.instrument.resolution(), away = k == 4 ? 400e3 : 1000 * frames[k].scale;
+    const Bootstrap bootstrap(scenario.clusters.size(), 0);
+    const Results truth = truth_of(scenario, dense / 4)[0];
+    for (Cluster& cluster : scenario.clusters) cluster.exact = in_double(cluster.map);
+    for (const bool exact : {false, true}) {
+      const Setting setting{.name = names[k], .detector = DetectorKind::analytic, .exact = exact};
+      const Results found = results_of(scenario, setting);
+      if (first.empty()) first = found;
+      const Row row = compared(setting, truth, found, resolution);
+      Sums all;
+      for (const Sums& sums : row.clusters) all.add(sums, 1);
+      double largest = 0;
+      std::size_t others = 0;
+      for (std::size_t c = 0; c < found.size(); ++c)
+        for (std::size_t i = 0; i < found[c].size(); ++i) {
+          const Points &here = found[c][i], &there = first[c][i];
+          others += here.size() != there.size() ? 1 : 0;
+          for (std::size_t e = 0; e < here.size() && here.size() == there.size(); ++e)
+            largest = std::fmax(largest, std::fabs((here[e].range - away) / frames[k].scale - (there[e].range - 1000)));
+        }
+      std::printf("| %s | %s | %s, %s | %s | %zu | %s |\n", names[k], exact ? "`double`" : "`float`",
+                  rounded(100 * all.lost / all.echoes).c_str(), rounded(100 * all.invented / all.echoes).c_str(),
+                  shown(interval_of(bootstrap(row.clusters, [](const Sums& s) { return s.score(); })), 1e3 / resolution)
+                      .c_str(),
+                  others, rounded(1e9 * largest).c_str());
     }
-    std::fprintf(out, "\n");
   }
-  std::fflush(out);
-}
-
-void add_rows(bench::Report& report, const Scenario& scenario, const std::vector<Point>& points) {
-  for (const Point& p : points) {
-    const Errors& e = p.errors;
-    report.row(scenario.name + "/" + p.setting.knob + "/" + p.setting.value, {{"ns/pulse", 1e9 * p.seconds},
-                                                                              {"MiB", p.memory},
-                                                                              {"range bias, mm", 1e3 * e.range_bias},
-                                                                              {"spread, mm", 1e3 * e.range_spread},
-                                                                              {"missed, %", e.missed},
-                                                                              {"invented, %", e.invented},
-                                                                              {"intensity, %", e.intensity},
-                                                                              {"width, ps", 1e12 * e.width},
-                                                                              {"echoes, %", e.echoes},
-                                                                              {"gap fraction, %", e.gap_fraction},
-                                                                              {"height at 95 %, m", e.height_95}});
-  }
-}
-
-/// Settings by pairs, each with its errors by those of the other. An interval with 1 inside is no ranking.
-void rank(bench::Report& report, const Scenario& scenario, const std::vector<Point>& points,
-          const Bootstrap& bootstrap) {
-  const auto named = [&](const std::string& name) {
-    return std::find_if(points.begin(), points.end(),
-                        [&](const Point& p) { return p.setting.knob + " " + p.setting.value == name; });
-  };
-  const std::string standard = "default " + points[0].setting.value;
-  const std::pair<std::string, std::string> pairs[]{{standard, "subrays rings 7"},
-                                                    {standard, "subrays rings 19"},
-                                                    {standard, "subrays rings 279"},
-                                                    {standard, "subrays sunflower 19"},
-                                                    {standard, "subrays lattice 7"},
-                                                    {standard, "subrays lattice 37"},
-                                                    {standard, "bins 0.1 ns"},
-                                                    {standard, "bins 0.5 ns"},
-                                                    {standard, "bins analytic"},
-                                                    {"subrays lattice 7", "subrays rings 7"},
-                                                    {"subrays lattice 4", "subrays rings 7"},
-                                                    {"subrays lattice 9", "subrays rings 19"},
-                                                    {"subrays lattice 18", "subrays rings 37"},
-                                                    {"subrays lattice 31", "subrays rings 62"},
-                                                    {"turned lattice 9", "turned rings 19"},
-                                                    {"turned lattice 13", "turned rings 19"},
-                                                    {"turned lattice 19", "turned rings 37"}};
-  for (const auto& [one, other] : pairs) {
-    const auto a = named(one), b = named(other);
-    if (a == points.end() || b == points.end()) continue;
-    const Intervals ratio = bootstrap.of_ratio(a->errors.blocks, b->errors.blocks);
-    const auto short_name = [&](const Point& p) {
-      return p.setting.knob == "subrays" ? p.setting.value : p.setting.knob + " " + p.setting.value;
-    };
-    report.row(scenario.name + ": " + short_name(*a) + " by " + short_name(*b), {{"range, from", ratio[0].low},
-                                                                                 {"range, to", ratio[0].high},
-                                                                                 {"echoes wrong, from", ratio[1].low},
-                                                                                 {"echoes wrong, to", ratio[1].high},
-                                                                                 {"intensity, from", ratio[2].low},
-                                                                                 {"intensity, to", ratio[2].high}});
-  }
-}
-
-std::FILE* opened(const std::string& path) {
-  std::FILE* file = std::fopen(path.c_str(), "w");
-  if (file == nullptr) {
-    std::fprintf(stderr, "tradeoff: cannot write %s\n", path.c_str());
-    std::exit(1);
-  }
-  return file;
 }
 
 }  // namespace
 
 int main(int count, char** words) {
   bench::Report report("tradeoff", count, words);
-  const auto& files = report.files();
-  std::FILE* csv = opened(files.empty() ? "/dev/null" : files[0]);
-  std::fprintf(csv,
-               "scenario,knob,value,footprint,subrays,detector,comparable,ns_per_pulse,pulses_per_second,scene_mib,"
-               "range_bias_mm,"
-               "range_spread_mm,range_rms_mm,range_95_mm,missed_percent,invented_percent,echoes_wrong_percent,"
-               "intensity_bias_percent,"
-               "intensity_percent,width_bias_ps,width_ps,echoes_percent,gap_fraction_percent,height_50_m,height_95_m,"
-               "height_99_m,"
-               "front_range,front_echoes,front_intensity,range_rms_low_mm,range_rms_high_mm,echoes_wrong_low_percent,"
-               "echoes_wrong_high_percent,intensity_low_percent,intensity_high_percent\n");
-  if (files.size() > 1) {
-    std::FILE* edges = opened(files[1]);
-    write_quadrature(edges);
-    std::fclose(edges);
-  }
+  auto makers = true_scenes();
+  for (auto& maker : reference_scenes()) makers.push_back(std::move(maker));
+  std::vector<Measured> scenes;
   const double start = bench::wall_seconds();
-  const Bootstrap bootstrap(pulse_count / run_length);
-  const std::pair<const char*, Scenario (*)(std::size_t)> scenarios[]{{"terrain", terrain},
-                                                                      {"wood_tripod", wood_from_a_tripod},
-                                                                      {"wood_drone", wood_from_a_drone},
-                                                                      {"street", street_from_a_car},
-                                                                      {"facade", facade},
-                                                                      {"step", step}};
-  for (const auto& [name, make] : scenarios) {
-    if (!report.wanted(name)) continue;
-    std::fprintf(stderr, "%4.0f s: %s\n", bench::wall_seconds() - start, name);
-    const Scenario scenario = make(pulse_count);
-    report.heading(scenario.title);
-    const std::vector<Point> points = measure(report, scenario, bootstrap);
-    add_rows(report, scenario, points);
-    write_csv(csv, scenario, points);
-    report.heading("Errors of a setting by those of another, " + scenario.name + ": intervals of 95 %");
-    rank(report, scenario, points, bootstrap);
+  for (std::uint32_t number = 0; number < makers.size(); ++number) {
+    if (!report.wanted(makers[number].first)) continue;
+    std::fprintf(stderr, "%4.0f s: %s\n", bench::wall_seconds() - start, makers[number].first.c_str());
+    scenes.push_back(measure(report, makers[number].second(), number));
   }
-  std::fprintf(stderr, "%4.0f s: float against double\n", bench::wall_seconds() - start);
-  measure_precision(report);
+  print_claims(scenes);
+  if (report.wanted("extremes")) print_extremes();
   std::fprintf(stderr, "%4.0f s: done\n", bench::wall_seconds() - start);
+  if (report.files().empty()) return 0;
+  std::FILE* csv = std::fopen(report.files()[0].c_str(), "w");
+  if (csv == nullptr) return 1;
+  for (const Measured& scene : scenes)
+    for (const Row& row : scene.rows)
+      if (const Interval s = interval_of(row.scores);
+          row.setting.name == row.setting.footprint.kind() + " " + std::to_string(row.setting.footprint.size()))
+        std::fprintf(csv, "%s,%s,%zu,%.6g,%.6g,%.6g\n", scene.name.c_str(), row.setting.footprint.kind().c_str(),
+                     row.setting.footprint.size(), 1e3 * s.middle, 1e3 * s.low, 1e3 * s.high);
   std::fclose(csv);
 }

@@ -13,8 +13,8 @@ namespace PULSECAST_NAMESPACE {
 /// Peak detector on the sum of the pulse shapes of all reflections, without sampling: times and
 /// heights are exact. Between two leading edges the sum is a quadratic polynomial times an
 /// exponential, so one pass over the reflections finds all extrema. A `SinglePeakGroup` is
-/// evaluated without sorting. Pareto-optimal in docs/tradeoff.md: faster than `FullWaveform`, which
-/// models the digitiser's bins and the receiver's noise, and as exact or more so.
+/// evaluated without sorting. It finds close echoes that the bins of `FullWaveform` lose
+/// (docs/tradeoff.md), which models the digitiser's bins and the receiver's noise.
 ///
 /// Continuous returns are exact, too: between all edges, theirs included, the sum is a quadratic
 /// polynomial times an exponential, and a linear one. Its extrema are bracketed in steps of a

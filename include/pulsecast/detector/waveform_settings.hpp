@@ -20,9 +20,8 @@ namespace PULSECAST_NAMESPACE {
 /// - it is later than the dead time of the echo before it;
 /// - it is among the `returns_max` that are kept.
 ///
-/// The default bin is Pareto-optimal in docs/tradeoff.md to within a few percent: bins of 1/16 of a
-/// pulse cost hardly more than wider ones, which lose close echoes. Widths cost more than any other
-/// setting, except for moments of `AnalyticWaveform`, so there are none by default.
+/// The default bin is 1/16 of a pulse of 4 ns: wider ones lose more close echoes, and save
+/// hardly any time; narrower ones lose fewer, and take more (docs/tradeoff.md).
 struct WaveformSettings {
   double sample_interval = 0.25e-9;               ///< from 1e-16 to 1, at most a pulse [s]
   double threshold = 1e-9;                        ///< of a peak: 21 photons of 1064 nm in 4 ns [W]

@@ -52,7 +52,7 @@ enum class RingMoments : std::uint8_t {
 /// Concentric circles about a central ray; circle i has floor(2 pi i) subrays. Each represents the
 /// ring of the beam up to halfway to its neighbours, and its subrays share that energy. The
 /// outermost ring ends at the 1/e^2 radius. Footprint of XML surveys. The beam extends beyond it,
-/// so more than 19 subrays gain little (docs/tradeoff.md): see `LatticeFootprint`. Slopes broaden
+/// so a `LatticeFootprint` of as many subrays has fewer errors (docs/tradeoff.md). Slopes broaden
 /// an echo by 17 % less than a beam does, unless the moments are those of the whole beam. Source:
 /// Winiwarter et al. 2022 for the numbers; the radii are our own, so that rings tile the footprint.
 class RingFootprint {
@@ -129,10 +129,9 @@ class SunflowerFootprint {
 
 /// Subrays of equal energy on a lattice with a column and a row for each, at the quantiles of a
 /// Gaussian beam, mapped so that the second moments are the beam's. Rows follow the order of the
-/// multiples of the golden ratio: neighbours across are far apart up. Pareto-optimal in
-/// docs/tradeoff.md. Edges and wires upright or level in the beam are sampled as exactly as with
-/// twice the number of subrays in rings, oblique ones as on a sunflower of as many. Source:
-/// Niederreiter 1992, ch. 3, for the order; rows and columns from the normal distribution.
+/// multiples of the golden ratio: neighbours across are far apart up. Fewer errors than as many
+/// subrays in rings, and as few as on a sunflower (docs/tradeoff.md). Source: Niederreiter 1992,
+/// ch. 3, for the order; rows and columns from the normal distribution.
 class LatticeFootprint {
  public:
   /// `subrays` from 1 to 100,000. Throws a `SettingError`.

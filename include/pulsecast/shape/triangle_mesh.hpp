@@ -26,8 +26,8 @@ concept Searches = requires(const Index& index, const Rays& rays, const Test& te
 /// without area are never hit, nor those whose area is no normal number, of edges below 1e-150 m.
 /// Triangles keep their numbers but are stored in the index's order, in blocks with vertices of
 /// their own. Each takes 10 bytes, its index and vertices of 24 bytes, and a byte for several
-/// materials. Rays pass holes of a `MaskedMesh`. `Bvh<float>` is Pareto-optimal in
-/// docs/tradeoff.md: the hits of `Bvh<double>` in less time and memory.
+/// materials. Rays pass holes of a `MaskedMesh`. `Bvh<float>` has the hits of `Bvh<double>`, in less
+/// memory (docs/tradeoff.md).
 template <Accelerator Index = Bvh<float>, class Masks = detail::NoMasks>
 class TriangleMesh {
  public:
