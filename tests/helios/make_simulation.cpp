@@ -134,7 +134,7 @@ TEST_CASE("errors of a run are told apart: noise of ranges is the instrument's, 
   CHECK(noisy.parts[3].name == "together");
   CHECK(range(noisy, 3) == support::relative(0.1, 0.05));
   const RunErrors peaks = errors(true, {.ideal = true});
-  CHECK(range(peaks, 1) > 1e-6);
+  CHECK(range(peaks, 1) > 1e-8);
   CHECK(range(peaks, 2) == 0);
   CHECK(range(errors(false, {.rings = 1, .ideal = true}), 0) > 1.5 * range(noisy, 0));
 }
