@@ -150,7 +150,7 @@ Coverage coverage_of(std::size_t surveys, PulseIndex pulses, const auto& make) {
 /// Surveys of a scene in all; the environment variable PULSECAST_SURVEYS asks for another number.
 std::size_t surveys() {
   const char* text = std::getenv("PULSECAST_SURVEYS");
-  return text ? std::strtoul(text, nullptr, 10) : 400;
+  return text ? std::strtoul(text, nullptr, 10) : 200;
 }
 
 template <class Pattern>
