@@ -17,18 +17,6 @@ using namespace bench;
 
 namespace {
 
-/// The town with another material for its windows.
-Scene<Mesh> town_with(const Material& windows) {
-  const auto town = street::scene(1);
-  std::vector<Scene<Mesh>::Part> parts(town.parts().begin(), town.parts().end());
-  for (auto& part : parts) {
-    std::vector<Material> materials = *part.materials;
-    if (materials.size() > street::glass) materials[street::glass] = windows;
-    part.materials = material_table(std::move(materials));
-  }
-  return Scene<Mesh>(std::move(parts));
-}
-
 template <class Light>
 double sum_of_ranges(const Scene<Mesh>& town, const Light& light) {
   const Survey survey{car(1'398'000), LatticeFootprint{19}, town, light, Receiver{}, FullWaveform{}};

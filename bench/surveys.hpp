@@ -51,6 +51,18 @@ using Mesh = TriangleMesh<>;
   return Scene<Mesh>({{.geometry = std::make_shared<const Mesh>(std::move(mesh))}});
 }
 
+/// The town of the street with another material for its windows.
+[[nodiscard]] inline Scene<Mesh> town_with(const Material& windows) {
+  const auto town = street::scene(1);
+  std::vector<Scene<Mesh>::Part> parts(town.parts().begin(), town.parts().end());
+  for (auto& part : parts) {
+    std::vector<Material> materials = *part.materials;
+    if (materials.size() > street::glass) materials[street::glass] = windows;
+    part.materials = material_table(std::move(materials));
+  }
+  return Scene<Mesh>(std::move(parts));
+}
+
 /// Sink that keeps the results of a run as one batch.
 struct Recording {
   std::vector<Shot> shots;

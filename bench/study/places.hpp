@@ -15,6 +15,7 @@
 
 #include "../../examples/street.hpp"
 #include "../../examples/wood.hpp"
+#include "../surveys.hpp"
 #include "scenes.hpp"
 
 /// Scenes without a closed form, which take a reference of the library by far more subrays.
@@ -67,14 +68,7 @@ template <class Source>
 
 /// The street with another material for its windows, from a car.
 [[nodiscard]] inline Scenario street_from_a_car(Scenario s, const Material& windows) {
-  const auto town = street::scene(1);
-  std::vector<Scene<Mesh>::Part> parts(town.parts().begin(), town.parts().end());
-  for (auto& part : parts) {
-    std::vector<Material> materials = *part.materials;
-    if (materials.size() > street::glass) materials[street::glass] = windows;
-    part.materials = material_table(std::move(materials));
-  }
-  const auto whole = std::make_shared<const Scene<Mesh>>(std::move(parts));
+  const auto whole = std::make_shared<const Scene<Mesh>>(bench::town_with(windows));
   const Laser laser{.wavelength = 905_nm, .peak_power = 75_W, .pulse_length = 5_ns, .divergence = 0.5_mrad};
   const Platform car{StraightLine{.from = street::on({2, -70}), .to = street::on({2, 70}), .speed = 10},
                      Mount{.lever_arm = {0, 0, 2.1}, .boresight = rotation_about(axis::up, 45_deg)},

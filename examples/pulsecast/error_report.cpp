@@ -10,6 +10,7 @@
 #include <utility>
 
 #include <pulsecast/base/error.hpp>
+#include <pulsecast/io/misses.hpp>
 #include <pulsecast/page/detail/json.hpp>
 #include <pulsecast/version.hpp>
 
@@ -21,9 +22,6 @@ using namespace pulsecast;
 using page::detail::JsonWriter;
 
 namespace {
-
-constexpr std::array<const char*, fate_count> fate_names{"returned",     "blocked",         "missed",
-                                                         "out_of_range", "below_threshold", "absorbed"};
 
 void add(JsonWriter& json, const EchoErrors& errors) {
   json.begin_object();
@@ -47,7 +45,7 @@ std::string report_of(const RunErrors& errors, const RunOrigin& origin, const Ru
   json.end_object().key("totals").begin_object();
   json.member("slots", run.slots).member("pulses", run.pulses()).member("echoes", run.echoes);
   json.member("rays", run.rays).member("seconds", run.seconds);
-  for (std::size_t f = 0; f < fate_count; ++f) json.member(fate_names[f], run.fates[f]);
+  for (std::size_t f = 0; f < fate_count; ++f) json.member(io::name_of(static_cast<Fate>(f)), run.fates[f]);
   json.end_object().key("sample").begin_object();
   json.member("slots", errors.slots).member("clusters", errors.clusters).member("share", errors.sampled_share);
   json.member("subrays", errors.subrays);

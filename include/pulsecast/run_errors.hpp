@@ -10,7 +10,7 @@
 /// Errors of the echoes of a run: a random sample of its slots is simulated again by better surveys of the same slots.
 ///
 ///     const RunErrors errors = errors_of_run(reference, {{"sampling", ideal}, {"instrument", survey}});
-///     const Estimate range = errors.parts.back().all[ErrorFigure::range];  // root mean square [m]
+///     const Estimate range = errors.parts.back().all[ErrorFigure::range_95];  // of 95 % of the echoes [m]
 namespace PULSECAST_NAMESPACE {
 
 /// Figures of the differences between found echoes and expected ones: quantiles over pairs of equal echoes of the

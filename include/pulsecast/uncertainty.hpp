@@ -43,7 +43,7 @@ class SurveyUncertainty {
       emitters_.push_back(
           {emitter,
            alike != emitters_.end() ? alike->timing : std::make_shared<const TimingErrors>(unit.detector, emitter),
-           deviation_of(unit.footprint, emitter)});
+           deviation_of(unit.footprint, emitter), unit.footprint.size() == 1});
       if (by_channel_.size() <= emitter.channel) by_channel_.resize(emitter.channel + 1U, none);
       std::size_t& known = by_channel_[emitter.channel];
       known = known == none || emitters_[known].emitter == emitter ? number : several;
@@ -59,16 +59,13 @@ class SurveyUncertainty {
       survey_->source().visit_errors(
           shot.index, shot.tick, [&](const PoseError<frame::World>& error) __attribute__((always_inline)) {
             Covariance& part = error.scope == ErrorScope::pulse ? u.random : u.systematic;
-            if (error.moved_any_way > 0) part.add(error.moved_any_way * error.moved_any_way);
-            const bool any_turn = error.turned_any_way > 0;
-            if (!any_turn && error.turned == Vec3{}) return part.add(error.moved);
             const Vec3 arm = error.about ? (shot.origin - *error.about) + beam : beam;
-            if (!any_turn || error.moved != Vec3{} || error.turned != Vec3{})
-              part.add(error.moved + cross(error.turned, arm));
-            const double square = error.turned_any_way * error.turned_any_way;
-            if (!any_turn) return;
-            part.add(square * dot(arm, arm));
-            part.add(arm, -square);
+            if (error.moved != Vec3{} || error.turned != Vec3{}) part.add(error.moved + cross(error.turned, arm));
+            if (error.moved_any_way > 0) part.add(error.moved_any_way * error.moved_any_way);
+            if (const double square = error.turned_any_way * error.turned_any_way; square > 0) {
+              part.add(square * dot(arm, arm));
+              part.add(arm, -square);
+            }
           });
     const RangeErrors& range = survey_->receivers()[of->emitter.receiver].receiver.range_errors;
     const double wide = of->deviation * beam_radius(of->emitter.laser, echo.range).x;
@@ -82,7 +79,7 @@ class SurveyUncertainty {
       u.random.add(wide * wide);
       u.random.add(wide * shot.direction, steep - 1);
     }
-    u.flags = flags_of(shot, echo, timing, biased);
+    u.flags = flags_of(shot, echo, timing, of->single, biased);
     return u;
   }
 
@@ -91,6 +88,7 @@ class SurveyUncertainty {
     Emitter emitter;
     std::shared_ptr<const TimingErrors> timing;
     double deviation;  // of the footprint, in radii of the beam
+    bool single;       // true for a footprint of one ray
   };
   static constexpr std::size_t none = std::numeric_limits<std::size_t>::max(), several = none - 1;
 
@@ -109,9 +107,8 @@ class SurveyUncertainty {
     return pulse ? &emitters_[pulse->emitter] : nullptr;
   }
 
-  [[nodiscard]] std::uint8_t flags_of(const Shot& shot, const Echo& echo, const TimingErrors::Error& timing,
-                                      bool biased) const noexcept {
-    const bool single = survey_->subrays() == 1;
+  static std::uint8_t flags_of(const Shot& shot, const Echo& echo, const TimingErrors::Error& timing, bool single,
+                               bool biased) noexcept {
     unsigned flags = 0;
     if (!single && shot.surface != MetSurface::smooth) flags |= PointUncertainty::mixed;
     if (timing.weak) flags |= PointUncertainty::weak;

@@ -188,7 +188,10 @@ class SurveyLeg {
   void visit_errors(PulseIndex i, Tick t, const Visit& visit) const noexcept {
     truth_.visit_errors(i, t, visit);
     for (const auto& [error, scope] : positions_) visit(PoseError<frame::World>{.moved = error, .scope = scope});
-    if (mount_error_) visit(error_between(path().at(t), path().at(t) * *mount_error_));
+    if (mount_error_) {
+      const auto body = path().at(t);
+      visit(error_between(body, body * *mount_error_));
+    }
     if (attitudes_.empty()) return;
     if (const auto p = truth_.pulse(i))
       for (const auto& [error, scope] : attitudes_)
