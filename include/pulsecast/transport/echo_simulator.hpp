@@ -129,6 +129,7 @@ class EchoSimulator {
     LinkBudget budget;      // link budget of its laser and receiver
     SubrayDirections beam;  // subrays, shared with emitters of equal beams
     bool errs = false;      // true if its receiver has range errors
+    RangeErrors errors{};   // drawn for this survey
   };
 
   /// Refuses a footprint whose shares do not sum to the whole beam.
@@ -173,7 +174,7 @@ class EchoSimulator {
       ++alike;
     *constants = {emitter, LinkBudget(unit.receiver, emitter.laser),
                   alike == constants ? SubrayDirections(unit.footprint, emitter) : alike->beam,
-                  !unit.receiver.range_errors.none()};
+                  !unit.receiver.range_errors.none(), unit.receiver.range_errors.drawn(seed_, emitter.receiver)};
   }
 
   static constexpr bool recorded = RecordsSubrays<Footprint>;
@@ -188,7 +189,7 @@ class EchoSimulator {
 
   [[nodiscard]] TransportResult trace(const Pulse<frame::World>& pulse, PulseIndex i, const EmitterConstants& constants,
                                       Workspace& w) const noexcept {
-    const auto& [emitter, budget, beam, errs] = constants;
+    const auto& [emitter, budget, beam, errs, errors] = constants;
     const Unit& unit = receivers_[emitter.receiver];
     TransportInput light{pulse, i, seed_, emitter, beam, unit.footprint.size(), budget, w.white_target};
     light.gate = unit.receiver.gate();
@@ -208,7 +209,7 @@ class EchoSimulator {
   /// Traces the rays of a sheaf, of pulses of one emitter.
   void trace_together(const EmitterConstants& constants, std::span<detail::BlockPulse*> pulses,
                       Workspace& w) const noexcept {
-    const auto& [emitter, budget, beam, errs] = constants;
+    const auto& [emitter, budget, beam, errs, errors] = constants;
     const RangeGate gate = receivers_[emitter.receiver].receiver.gate();
     const std::span<Hit> hits = w.transport.hits;
     w.rays.enclose();
@@ -238,12 +239,11 @@ class EchoSimulator {
     const Unit& unit = receivers_[emitter.receiver];
     const DetectorInput input{emitter, unit.receiver.gate(), reflections, {.seed = seed_, .pulse = i}, continuous};
     const Detection detection = unit.detector.detect(input, w.detectors[emitter.receiver]);
-    const RangeErrors& errors = errors_[emitter.receiver];
     bool all_inside = true;
     for (Echo& echo : detection.echoes) {
       echo.reflectance = echo.amplitude / white.power(constants.budget, echo.range);
       if (constants.errs) [[unlikely]]
-        echo.range += errors.at(echo, normal({seed_, i, echo.number, Purpose::range_noise}), emitter.channel);
+        echo.range += constants.errors.at(echo, normal({seed_, i, echo.number, Purpose::range_noise}), emitter.channel);
       all_inside &= input.gate.contains(echo.range);
     }
     const std::span<Echo> echoes = all_inside ? detection.echoes : detail::inside(input.gate, detection.echoes);
@@ -257,7 +257,6 @@ class EchoSimulator {
   const Target* target_;
   Transport transport_;
   std::vector<Unit> receivers_;
-  std::vector<RangeErrors> errors_{};  // of each receiver, as drawn for this survey
   std::uint64_t seed_;
   std::span<const EmitterConstants> emitters_{};  // by number
   std::shared_ptr<const void> identity_{};        // owner of the constants, shared with copies
@@ -274,7 +273,6 @@ EchoSimulator<Footprint, Target, Detector, Transport>::EchoSimulator(
     detail::validate_in_place(unit.receiver);
     detail::validate_in_place(unit.detector);
     require_whole_beam(unit.footprint);
-    errors_.push_back(unit.receiver.range_errors.drawn(seed_, static_cast<std::uint32_t>(errors_.size())));
   }
   require_alike();
   if constexpr (ValidatesTarget<Transport, Target>) transport_.validate(*target_);
