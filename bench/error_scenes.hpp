@@ -166,6 +166,7 @@ struct SurveyPair {
 /// A scene, built once, for many small surveys.
 class Surveyed {
  public:
+  using Map = MovingScene<TriangleMesh<>>;
   static constexpr PulseIndex slots = 1024;
   static constexpr double duration = Lines::interval * static_cast<double>(slots);  ///< [s]
 
@@ -224,8 +225,9 @@ class Surveyed {
                {.sample_interval = 0.125e-9, .threshold = scene_.threshold, .timing = EchoTiming::true_range}, {}, 0)};
   }
 
+  [[nodiscard]] const std::shared_ptr<const Map>& map() const noexcept { return map_; }
+
  private:
-  using Map = MovingScene<TriangleMesh<>>;
   ErrorScene scene_;
   std::shared_ptr<const Map> map_{};
 };

@@ -98,18 +98,19 @@ TEST_CASE("variants are forecast by what they change on the same pulses, and dif
   const VariantForecaster variants(forecaster, known, survey, 1, 3);
   CHECK(variants.estimate(survey).echoes.value == 5e4);
   CHECK(std::fabs(variants.estimate(more).echoes.value / 1.5e5 - 1) < 0.1);
-  const EchoDifferences same = variants.differences(survey, 1), other = variants.differences(moved, 1),
-                        far = variants.differences(moved, 0.1), twice = variants.differences(more, 1);
-  CHECK(same.range.value == 0);
-  CHECK(same.lost == 0);
-  CHECK(other.range.value == 0.125);
-  CHECK(other.intensity.value == 0.125);
-  CHECK(other.lost == 0);
-  CHECK(far.lost == 1);
-  CHECK(far.invented == 1);
-  CHECK(std::isinf(far.range.high));
-  CHECK(twice.lost == 0);
-  CHECK(twice.invented == support::relative(2.0 / 3, 1e-12));
+  const auto errors = [&](const Pattern& variant, double reach) { return variants.errors(variant, reach).all; };
+  const EchoErrors same = errors(survey, 1), other = errors(moved, 1), far = errors(moved, 0.1),
+                   twice = errors(more, 1);
+  CHECK(same[ErrorFigure::range_95].value == 0);
+  CHECK(same[ErrorFigure::lost].value == 0);
+  CHECK(other[ErrorFigure::range_95].value == 0.125);
+  CHECK(other[ErrorFigure::intensity_95].value == 0.125);
+  CHECK(other[ErrorFigure::lost].value == 0);
+  CHECK(far[ErrorFigure::lost].value == 1);
+  CHECK(far[ErrorFigure::invented].value == 1);
+  CHECK(std::isinf(far[ErrorFigure::range_95].high));
+  CHECK(twice[ErrorFigure::lost].value == 0);
+  CHECK(twice[ErrorFigure::invented].value == support::relative(2.0 / 3, 1e-12));
 }
 
 }  // namespace

@@ -61,13 +61,43 @@ std::string report_of(const RunErrors& errors, const RunOrigin& origin, const Ru
   return json.text() + '\n';
 }
 
-/// Value and limits of a figure, in the unit of lengths or in percent.
-std::string cell(const EchoErrors& errors, std::size_t figure) {
-  const Estimate& e = errors.figures[figure];
-  return text_of(e, error_figure_units[figure].empty() ? percent : length_unit(e.value), 3);
+}  // namespace
+
+const char* label_of(ErrorFigure figure) {
+  static constexpr std::array<const char*, error_figure_count> labels{
+      "range, 68.3 %",     "range, 95 %",     "position, 68.3 %", "position, 95 %",
+      "intensity, 68.3 %", "intensity, 95 %", "lost echoes",      "invented echoes"};
+  return labels[static_cast<std::size_t>(figure)];
 }
 
-}  // namespace
+std::string text_of(const EchoErrors& errors, ErrorFigure figure) {
+  const Estimate& e = errors[figure];
+  const bool is_length = !error_figure_units[static_cast<std::size_t>(figure)].empty();
+  return text_of(e, is_length ? length_unit(e.value) : percent, 3);
+}
+
+void print(const RunErrors& errors, bool by_class) {
+  const auto row = [](const std::string& label, const auto& parts, const auto& text) {
+    std::cout << "  " << std::left << std::setw(18) << label;
+    for (const auto& part : parts) std::cout << std::setw(30) << text(part);
+    std::cout << std::right << '\n';
+  };
+  const auto rows = [&](const auto& parts, const auto& of) {
+    for (std::size_t f = 0; f < error_figure_count; ++f) {
+      const auto figure = static_cast<ErrorFigure>(f);
+      row(label_of(figure), parts, [&](const auto& part) { return text_of(of(part), figure); });
+    }
+  };
+  std::cout << "\nerrors by a sample of " << errors.slots << " pulse slots, against " << errors.subrays
+            << " subrays:\n";
+  row("", errors.parts, [](const ErrorsByClass& part) { return part.name; });
+  rows(errors.parts, [](const ErrorsByClass& part) -> const EchoErrors& { return part.all; });
+  if (!by_class) return;
+  for (const auto& [classification, together] : errors.parts.back().classes) {
+    std::cout << "class " << classification << ", together:\n";
+    rows(std::array{&together}, [](const EchoErrors* some) -> const EchoErrors& { return *some; });
+  }
+}
 
 ErrorReport::ErrorReport(const helios::Simulation& simulation, const Options& options, std::uint64_t seed)
     : options_(options), errors_(std::async(std::launch::async, [&simulation, &options, seed] {
@@ -81,27 +111,5 @@ void ErrorReport::finish(const fs::path& folder, RunOrigin origin, const RunSumm
   std::ofstream out(path);
   out << report_of(errors, origin, run) << std::flush;
   if (!out) throw FileError(path.string(), "", "cannot be written");
-  if (!options_.quiet) print(errors);
-}
-
-void ErrorReport::print(const RunErrors& errors) const {
-  static constexpr std::array<const char*, error_figure_count> labels{
-      "range, 68.3 %",     "range, 95 %",     "position, 68.3 %", "position, 95 %",
-      "intensity, 68.3 %", "intensity, 95 %", "lost echoes",      "invented echoes"};
-  const auto row = [](const std::string& label, const auto& parts, const auto& text) {
-    std::cout << "  " << std::left << std::setw(18) << label;
-    for (const auto& part : parts) std::cout << std::setw(30) << text(part);
-    std::cout << std::right << '\n';
-  };
-  std::cout << "\nerrors by a sample of " << errors.slots << " pulse slots, against " << errors.subrays
-            << " subrays:\n";
-  row("", errors.parts, [](const ErrorsByClass& part) { return part.name; });
-  for (std::size_t f = 0; f < error_figure_count; ++f)
-    row(labels[f], errors.parts, [f](const ErrorsByClass& part) { return cell(part.all, f); });
-  if (!options_.verbose) return;
-  for (const auto& [classification, together] : errors.parts.back().classes) {
-    std::cout << "class " << classification << ", together:\n";
-    for (std::size_t f = 0; f < error_figure_count; ++f)
-      row(labels[f], std::array{&together}, [f](const EchoErrors* some) { return cell(*some, f); });
-  }
+  if (!options_.quiet) print(errors, options_.verbose);
 }

@@ -33,8 +33,13 @@ class ErrorReport {
   void finish(const std::filesystem::path& folder, RunOrigin origin, const pulsecast::RunSummary& run);
 
  private:
-  void print(const pulsecast::RunErrors& errors) const;
-
   const Options& options_;
   std::future<pulsecast::RunErrors> errors_;
 };
+
+/// Name of a figure for users.
+const char* label_of(pulsecast::ErrorFigure figure);
+/// Value and limits of a figure, in the unit of lengths or in percent.
+std::string text_of(const pulsecast::EchoErrors& errors, pulsecast::ErrorFigure figure);
+/// Prints the errors of all parts; `by_class` also those of each class.
+void print(const pulsecast::RunErrors& errors, bool by_class);

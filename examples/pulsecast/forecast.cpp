@@ -42,6 +42,7 @@ class Forecaster {
              double loading)
       : simulation_(simulation),
         options_(options),
+        seed_(seed),
         workers_(std::min(thread_count(options.threads), thread_count(0))),
         loading_(loading),
         channels_(file_channels(options, survey)),
@@ -64,13 +65,16 @@ class Forecaster {
   }
 
   [[nodiscard]] Forecasts all() const {
-    const ReceiverOverrides finest{
-        .rings = std::clamp(2 * rings_, 26, 100), .bin_size = pulse_length_ / 128, .ideal = true};
+    const ReceiverOverrides finest = simulation_.reference();
     Forecasts out{.loading = loading_,
                   .slots = simulation_.survey().size(),
                   .sampled = own_.sampled,
                   .finest = subrays_of(*finest.rings)};
-    const std::vector<ReceiverOverrides> candidates = this->candidates();
+    std::optional<SettingsChoice> choice;
+    if (options_.accuracy)
+      choice = simulation_.choose(*options_.accuracy, {.seed = seed_, .threads = options_.threads});
+    const std::vector<ReceiverOverrides> candidates =
+        choice ? std::vector<ReceiverOverrides>{{}, ReceiverOverrides::of(choice->values)} : this->candidates();
     const auto effort = [&, own = static_cast<double>(subrays_of(rings_))](int rings) {
       return 0.3 + 0.7 * static_cast<double>(subrays_of(rings)) / own;
     };
@@ -79,6 +83,7 @@ class Forecaster {
     const VariantForecaster variants(run_, own_, simulation_.with_receivers(finest)->survey(), effort(*finest.rings),
                                      efforts);
     for (const ReceiverOverrides& overrides : candidates) out.all.push_back(forecast(overrides, variants));
+    if (choice) out.all.back().errors = choice->errors;
     return out;
   }
 
@@ -91,23 +96,20 @@ class Forecaster {
     bins.push_back(bin_size_);
     for (const int rings : {1, 2, 3, 4, 5, 6, 8, 10})
       for (const double bin : bins)
-        if (rings != rings_ || bin != bin_size_) all.push_back({rings, bin});
+        if (rings != rings_ || bin != bin_size_) all.push_back({.rings = rings, .bin_size = bin});
     return all;
   }
 
   [[nodiscard]] Forecast forecast(const ReceiverOverrides& overrides, const VariantForecaster& variants) const {
-    const ReceiverOverrides ideal{overrides.rings, overrides.bin_size, true};
+    ReceiverOverrides ideal = overrides;
+    ideal.ideal = true;
     const double reach = 0.25 * speed_of_light * pulse_length_;  // half a pulse length, two-way
     const bool other = overrides != ReceiverOverrides{};
     const RunEstimate run = other ? variants.estimate(simulation_.with_receivers(overrides)->survey()) : own_;
-    const EchoDifferences differences = variants.differences(simulation_.with_receivers(ideal)->survey(), reach);
     Forecast f{.overrides = overrides,
                .subrays = subrays_of(overrides.rings.value_or(rings_)),
                .points = run.echoes,
-               .range_error = differences.range,
-               .intensity_error = differences.intensity,
-               .lost = differences.lost,
-               .invented = differences.invented};
+               .errors = variants.errors(simulation_.with_receivers(ideal)->survey(), reach).all};
     entire(f, run.seconds);
     return f;
   }
@@ -137,6 +139,7 @@ class Forecaster {
 
   const Simulation& simulation_;
   const Options& options_;
+  std::uint64_t seed_;
   double workers_;  ///< threads that run at the same time
   double loading_;
   std::vector<std::string> channels_;  ///< see `file_channels`

@@ -17,14 +17,12 @@
 /// Forecast of a survey with certain settings.
 struct Forecast {
   pulsecast::helios::ReceiverOverrides overrides{};
-  std::size_t subrays = 0;                ///< per pulse
-  pulsecast::Estimate seconds{};          ///< total run time [s]
-  pulsecast::Estimate memory{};           ///< peak [byte]
-  pulsecast::Estimate points{};           ///< in all files
-  pulsecast::Estimate bytes{};            ///< of all files
-  pulsecast::Estimate range_error{};      ///< 95 % quantile over echoes, against a far finer simulation [m]
-  pulsecast::Estimate intensity_error{};  ///< 95 % quantile, relative
-  double lost = 0, invented = 0;          ///< relative numbers of echoes only in the finer simulation, and only here
+  std::size_t subrays = 0;         ///< per pulse
+  pulsecast::Estimate seconds{};   ///< total run time [s]
+  pulsecast::Estimate memory{};    ///< peak [byte]
+  pulsecast::Estimate points{};    ///< in all files
+  pulsecast::Estimate bytes{};     ///< of all files
+  pulsecast::EchoErrors errors{};  ///< without those of the instrument, against the reference
 };
 
 /// Forecasts of a survey from a sample of its pulses.
@@ -33,7 +31,8 @@ struct Forecasts {
   std::uint64_t slots = 0;      ///< number of slots in the survey
   std::uint64_t sampled = 0;    ///< simulated slots of `all.front()`
   std::size_t finest = 0;       ///< subrays of the reference simulation
-  std::vector<Forecast> all{};  ///< the first has the survey's own settings
+  std::vector<Forecast> all{};  ///< the first has the survey's own settings; the second, if an accuracy is asked for,
+  ///< those that reach it, or come nearest
 };
 
 /// Simulates samples of a survey at several settings. The simulation must be new; `loading` is the time of making it

@@ -17,11 +17,15 @@
 
 #include <pulsecast/base/parallel.hpp>
 
+#include "accuracy.hpp"
+#include "error_report.hpp"
 #include "estimate_text.hpp"
 #include "forecast.hpp"
 #include "outputs.hpp"
 
 namespace {
+
+using pulsecast::ErrorFigure;
 
 /// Chooses settings, with reasons.
 class SettingsChooser {
@@ -46,8 +50,8 @@ class SettingsChooser {
       return *std::min_element(able.begin(), able.end(), by(second));
     };
     const auto seconds = [](const Forecast& f) { return f.seconds.value; };
-    const auto error = [](const Forecast& f) { return f.range_error.value; };
-    return asked_.range_error || asked_.intensity_error ? best(seconds, error) : best(error, seconds);
+    const auto error = [](const Forecast& f) { return f.errors[ErrorFigure::range_95].value; };
+    return options_.accuracy ? best(seconds, error) : best(error, seconds);
   }
 
   /// Forecast with the smallest violation of the limits.
@@ -69,13 +73,11 @@ class SettingsChooser {
   }
 
   [[nodiscard]] std::string demands() const {
-    std::string all;
+    std::string all = options_.accuracy ? text_of(*options_.accuracy) : "";
     const auto add = [&](const char* name, const std::optional<double>& asked, const Unit& unit) {
       if (asked)
         all += (all.empty() ? "" : ", ") + std::string(name) + ' ' + digits(*asked / unit.size) + ' ' + unit.name;
     };
-    add("a range error of", asked_.range_error, length_unit(asked_.range_error.value_or(1)));
-    add("an intensity error of", asked_.intensity_error, percent);
     add("a run time of", asked_.time, time_unit(asked_.time.value_or(1)));
     add("a memory of", asked_.memory, bytes_unit(asked_.memory.value_or(1)));
     return all;
@@ -98,10 +100,10 @@ class SettingsChooser {
       column(12, digits(bin_size(*f) * 1e9));
       column(12, digits(f->seconds.value));
       column(12, digits(f->points.value));
-      column(18, digits(f->range_error.value * 1e3));
-      column(21, digits(f->intensity_error.value * 1e2));
-      column(10, digits(f->lost * 1e2));
-      column(11, digits(f->invented * 1e2));
+      column(18, digits(f->errors[ErrorFigure::range_95].value * 1e3));
+      column(21, digits(f->errors[ErrorFigure::intensity_95].value * 1e2));
+      column(10, digits(f->errors[ErrorFigure::lost].value * 1e2));
+      column(11, digits(f->errors[ErrorFigure::invented].value * 1e2));
       std::cout << '\n';
     }
     std::cout << "  * current settings\n";
@@ -116,8 +118,9 @@ class SettingsChooser {
     line("memory", text_of(f.memory, bytes_unit(f.memory.value)));
     line("points", text_of(f.points, one));
     line("files", text_of(f.bytes, bytes_unit(f.bytes.value)));
-    line("range error", text_of(f.range_error, length_unit(f.range_error.value)));
-    line("intensity error", text_of(f.intensity_error, percent));
+    for (const ErrorFigure figure : {ErrorFigure::range_95, ErrorFigure::position_95, ErrorFigure::intensity_95,
+                                     ErrorFigure::lost, ErrorFigure::invented})
+      line(label_of(figure), text_of(f.errors, figure));
   }
 
  private:
@@ -127,8 +130,7 @@ class SettingsChooser {
     const auto hold = [&](const pulsecast::Estimate& e, const std::optional<double>& asked) {
       if (asked) most = std::max(most, e.high / *asked);
     };
-    hold(f.range_error, asked_.range_error);
-    hold(f.intensity_error, asked_.intensity_error);
+    if (options_.accuracy) most = options_.accuracy->share_of_limits(f.errors).high;
     hold(f.seconds, asked_.time);
     hold(f.memory, asked_.memory);
     return most;
@@ -139,8 +141,9 @@ class SettingsChooser {
     std::vector<const Forecast*> rows;
     for (const Forecast& f : found_.all) {
       const bool dominated = std::any_of(found_.all.begin(), found_.all.end(), [&](const Forecast& other) {
-        return other.seconds.value < f.seconds.value && other.range_error.value <= f.range_error.value &&
-               other.intensity_error.value <= f.intensity_error.value;
+        const auto no_worse = [&](ErrorFigure figure) { return other.errors[figure].value <= f.errors[figure].value; };
+        return other.seconds.value < f.seconds.value && no_worse(ErrorFigure::range_95) &&
+               no_worse(ErrorFigure::intensity_95) && no_worse(ErrorFigure::lost) && no_worse(ErrorFigure::invented);
       });
       if (!dominated || options_.verbose || &f == &found_.all.front()) rows.push_back(&f);
     }
@@ -177,7 +180,7 @@ bool forecast(const Options& options, const SurveyFile& file, const Loading& loa
     std::cout << "forecast in "
               << digits(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count() - loading_time)
               << " s\n";
-  if (!options.forecast.asks()) return true;
+  if (!options.accuracy && !options.forecast.time && !options.forecast.memory) return true;
 
   std::cout << '\n';
   const Forecast* const chosen = chooser.choose();
@@ -187,6 +190,10 @@ bool forecast(const Options& options, const SurveyFile& file, const Loading& loa
     return false;
   }
   chooser.print("best within the limits: ", *chosen);
+  if (options.accuracy)
+    print(simulation->with_receivers(chosen->overrides)
+              ->errors({.seed = loading.settings.seed, .threads = options.threads}),
+          options.verbose);
   if (options.forecast.apply) {
     const std::filesystem::path& to = options.forecast.apply_to.empty() ? options.survey : options.forecast.apply_to;
     write_survey_file(options, file, {chooser.rings(*chosen), chooser.bin_size(*chosen)}, to);

@@ -34,6 +34,7 @@
 #include <pulsecast/version.hpp>
 
 #include "../summary.hpp"
+#include "accuracy.hpp"
 #include "entry.hpp"
 #include "error_report.hpp"
 #include "forecast_report.hpp"
@@ -150,6 +151,11 @@ class Session {
     note_inputs(*inputs);
     std::unique_ptr<Simulation> simulation = loaded(inputs);
     note_inputs(*inputs);
+    if (options_.accuracy) {
+      chosen_ = chosen_settings(*simulation, *options_.accuracy, log_.seed, options_.threads,
+                                options_.quiet || !ranks_.first());
+      simulation = simulation->with_receivers(*chosen_);
+    }
     if (again) require_run(*again, simulation->repetitions());
     settle_start_time(*simulation, again, start_time);
     if (again) forget_run_before(parent);
@@ -291,12 +297,13 @@ class Session {
       log_.run = r;
       if (r > 0) {
         simulation = simulation->repetition(r);
+        if (chosen_) simulation = simulation->with_receivers(*chosen_);
         if (note_inputs(inputs)) log_.write(folder);
         print_notes(*simulation);
         take_columns(options_, survey_, *simulation);
       }
       std::optional<ErrorReport> errors;
-      if (options_.errors && ranks_.first()) errors.emplace(*simulation, options_, log_.seed);
+      if ((options_.errors || chosen_) && ranks_.first()) errors.emplace(*simulation, options_, log_.seed);
       const RunSummary played = play(*simulation, folder, std::exchange(again, std::nullopt).has_value());
       if (errors && played.complete) errors->finish(folder, {file_.text, log_.how, log_.inputs, log_.seed, r}, played);
       all.add(played);
@@ -379,6 +386,7 @@ class Session {
     }
     if (options_.project_to != 0) out << " project=" << options_.project_from << ':' << options_.project_to;
     if (options_.uncertainty) out << " uncertainty";
+    if (options_.accuracy) out << " accuracy=" << text_of(*options_.accuracy);
     if (options_.colours) out << " colours=" << options_.near_infrared;
     for (const std::string& column : options_.columns) out << " column=" << column;
     if (point_format(options_.format).in_scans) out << " scans=" << text::to_text(options_.scan_rate);
@@ -518,7 +526,8 @@ class Session {
   RunLog log_;
   std::optional<RunLock> lock_;  // of the output folder, on the first process
   std::vector<std::string> folders_, scene_notes_;
-  std::string empty_legs_;  // numbers of active legs without points
+  std::string empty_legs_;                           // numbers of active legs without points
+  std::optional<helios::ReceiverOverrides> chosen_;  // by --accuracy
   Notes& notes_;
 };
 

@@ -20,6 +20,7 @@
 #include <pulsecast/base/text.hpp>
 #include <pulsecast/version.hpp>
 
+#include "accuracy.hpp"
 #include "point_formats.hpp"
 #include "quantity.hpp"
 
@@ -246,6 +247,15 @@ class CommandLine {
         ->type_name("M")
         ->check(number_check<double>([](double range) { return range >= 0 && range <= 1e9; }, "range from 0 to 1e9 m"));
     app_.add_flag("--geojson", o_.geojson, "Write trajectories and footprints as GeoJSON, too");
+    app_.add_option_function<std::string>(
+            "--accuracy",
+            [this](const std::string& given) {
+              if (const std::string problem = read_accuracy(given, o_.accuracy); !problem.empty())
+                throw CLI::ValidationError("--accuracy", problem);
+            },
+            "Choose the cheapest settings that reach an accuracy, as in range=5mm,echoes=1%; also intensity=, "
+            "position=")
+        ->type_name("LIST");
     app_.add_flag("--errors", o_.errors, "Compute the errors of the run by a sample, and write report.json");
     app_.add_flag(both("calcEchowidth"), o_.echo_width, "Measure the width of echoes");
     app_.add_flag(both("fullwaveNoise"), o_.waveform_noise, "Add receiver noise");
@@ -292,8 +302,6 @@ class CommandLine {
             return quantity(given, kind) ? std::string() : "'" + given + "': expected " + kind.expected;
           }));
     };
-    demand("--range-error", range_error_, a_length, "forecast: maximum range error, as in 5mm", "LENGTH");
-    demand("--intensity-error", intensity_error_, a_share, "forecast: maximum intensity error, as in 2%", "SHARE");
     demand("--time", time_, a_duration, "forecast: maximum run time, as in 10min", "DURATION");
     demand("--memory", memory_, a_size, "forecast: maximum memory, as in 4GB", "SIZE");
     of_forecast_.push_back(
@@ -367,14 +375,12 @@ class CommandLine {
     for (const CLI::Option* option : of_forecast_)
       if (option->count() > 0 && o_.command != "forecast") return option->get_name() + " is for forecast only";
     if (o_.command != "forecast") return "";
-    o_.forecast = {.range_error = quantity(range_error_, a_length),
-                   .intensity_error = quantity(intensity_error_, a_share),
-                   .time = quantity(time_, a_duration),
+    o_.forecast = {.time = quantity(time_, a_duration),
                    .memory = quantity(memory_, a_size),
                    .apply = of_forecast_.back()->count() > 0,
                    .apply_to = apply_to_};
-    const bool knows_why = !o_.forecast.apply || o_.forecast.asks();
-    return knows_why ? "" : "--apply needs a limit: expected --range-error, --intensity-error, --time or --memory";
+    const bool knows_why = !o_.forecast.apply || o_.accuracy || o_.forecast.time || o_.forecast.memory;
+    return knows_why ? "" : "--apply needs a limit: expected --accuracy, --time or --memory";
   }
 
   /// Problem of the format with other options; empty if there is none.
@@ -473,8 +479,7 @@ class CommandLine {
       "  pulsecast catalogue             lists the scanners and platforms of the catalogue\n",
       "pulsecast"};
   Options o_;
-  std::string seed_, epsg_, project_, misses_at_, scan_rate_, waveform_bins_, range_error_, intensity_error_, time_,
-      memory_, apply_to_, swallowed_;
+  std::string seed_, epsg_, project_, misses_at_, scan_rate_, waveform_bins_, time_, memory_, apply_to_, swallowed_;
   bool las_ = false, zip_ = false, no_platform_noise_ = false, no_leg_noise_ = false, rebuild_scene_ = false,
        no_scene_writing_ = false;
   std::vector<CLI::Option*> of_forecast_, unused_;

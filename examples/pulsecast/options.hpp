@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include <pulsecast/accuracy.hpp>
 #include <pulsecast/io/point_layout.hpp>
 #include <pulsecast/io/ptx.hpp>
 #include <pulsecast/io/spatial_reference.hpp>
@@ -25,14 +26,10 @@ struct SceneStore {
 
 /// Limits of the command `forecast`.
 struct ForecastLimits {
-  std::optional<double> range_error{};      ///< maximum [m]
-  std::optional<double> intensity_error{};  ///< maximum, relative
-  std::optional<double> time{};             ///< maximum per run [s]
-  std::optional<double> memory{};           ///< maximum [byte]
+  std::optional<double> time{};    ///< maximum per run [s]
+  std::optional<double> memory{};  ///< maximum [byte]
   bool apply = false;
   std::filesystem::path apply_to{};  ///< empty: the survey itself
-
-  [[nodiscard]] bool asks() const { return range_error || intensity_error || time || memory; }
 };
 
 /// Options of the command line.
@@ -62,7 +59,8 @@ struct Options {
   std::optional<double> misses_at{};  ///< range of points for pulses without echoes; default: no such points [m]
   bool geojson = false;               ///< write trajectories and footprints
   bool errors = false;                ///< write and print the errors of the run
-  bool page = false, live = false;    ///< page of the points: as a file, and live
+  std::optional<pulsecast::Accuracy> accuracy{};  ///< settings that reach it are chosen
+  bool page = false, live = false;                ///< page of the points: as a file, and live
   std::size_t page_points = 1'000'000;
   bool split_by_channel = false, platform_noise = true, leg_noise = true, resume = false, quiet = false,
        verbose = false;

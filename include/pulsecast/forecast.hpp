@@ -42,12 +42,6 @@ struct RunEstimate {
   std::uint64_t sampled = 0;  ///< slots that were simulated
 };
 
-/// Differences of the echoes of pulses from those of a finer simulation.
-struct EchoDifferences {
-  Estimate range{}, intensity{};  ///< 95 % quantiles over echoes in both [m]; relative
-  double lost = 0, invented = 0;  ///< shares of echoes only in the finer simulation, and only here
-};
-
 /// Forecasts a run of a survey from a stratified random sample of its slots, and its time from blocks of consecutive
 /// ones. A small survey is counted in full.
 class RunForecaster {
@@ -228,12 +222,6 @@ class VariantForecaster {
   [[nodiscard]] ErrorsByClass errors(const AnySurvey& variant, double reach) const {
     return detail::errors_by_class("", detail::matches_of(finer_, sampled(variant, compared_), reach), compared_.size(),
                                    0);
-  }
-  /// Differences of a variant from the finer survey, whose echoes are the same within `reach` [m].
-  [[nodiscard]] EchoDifferences differences(const AnySurvey& variant, double reach) const {
-    const EchoErrors all = errors(variant, reach).all;
-    return {all[ErrorFigure::range_95], all[ErrorFigure::intensity_95], all[ErrorFigure::lost].value,
-            all[ErrorFigure::invented].value};
   }
 
  private:

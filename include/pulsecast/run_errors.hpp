@@ -55,7 +55,7 @@ struct RunErrors {
 /// Options of a sample of slots.
 struct ErrorSampleOptions {
   std::uint64_t seed = 0;                                   ///< seed of the choice of clusters
-  std::size_t clusters = 1024;                              ///< number of clusters, at least 2
+  std::size_t clusters = 1024;                              ///< number of clusters with echoes, at least 2
   PulseIndex length = 4;                                    ///< consecutive slots in a cluster, at least 1
   PulseIndex first = 0;                                     ///< first slot of the run
   PulseIndex end = std::numeric_limits<PulseIndex>::max();  ///< one past its last slot, at most the survey's size
@@ -227,7 +227,24 @@ class ErrorSample {
     if (slots > 0) share_ = static_cast<double>(drawn) / static_cast<double>(all);
   }
 
+  /// So many clusters of a survey that about `clusters` of them have echoes; up to 8 times as many.
+  /// @throws SettingError for options out of range
+  ErrorSample(const AnySurvey& survey, const ErrorSampleOptions& options) : ErrorSample(survey.size(), options) {
+    const std::vector<Sample> pilot = simulate(survey);
+    const auto empty = std::ranges::count_if(pilot, [](const Sample& cluster) { return cluster.counts.echoes == 0; });
+    if (empty == 0 || share_ == 1) return;
+    const double number = static_cast<double>(pilot.size()), full = number - static_cast<double>(empty);
+    options_.clusters = static_cast<std::size_t>(number * std::min(8.0, number / std::max(1.0, full)));
+    *this = ErrorSample(survey.size(), options_);
+  }
+
   [[nodiscard]] const std::vector<SampleBlock>& blocks() const noexcept { return blocks_; }  ///< in order
+  /// Number of slots in the sample.
+  [[nodiscard]] std::uint64_t slots() const noexcept {
+    std::uint64_t all = 0;
+    for (const SampleBlock& block : blocks_) all += block.end - block.from;
+    return all;
+  }
   [[nodiscard]] double share() const noexcept { return share_; }  ///< part of the run that is in the sample
 
   /// Simulates the clusters by a survey of the same slots.
@@ -259,16 +276,19 @@ struct ErrorStep {
 /// @throws SettingError for options out of range @throws std::invalid_argument for surveys of different slots
 [[nodiscard]] inline RunErrors errors_of_run(const AnySurvey& reference, std::span<const ErrorStep> steps,
                                              const ErrorSampleOptions& options = {}) {
-  const ErrorSample sample(reference.size(), options);
-  RunErrors errors{.clusters = sample.blocks().size(), .sampled_share = sample.share(), .subrays = reference.subrays()};
-  for (const SampleBlock& block : sample.blocks()) errors.slots += block.end - block.from;
-  const std::vector<Sample> best = sample.simulate(reference);
-  std::vector<Sample> before = best;
-  for (const ErrorStep& step : steps) {
+  for (const ErrorStep& step : steps)
     if (step.survey.size() != reference.size())
       throw std::invalid_argument(
           text::joined({"errors of a run: the survey of ", step.cause, " has ", std::to_string(step.survey.size()),
                         " slots: expected ", std::to_string(reference.size()), ", as the reference has"}));
+  const ErrorSample sample(steps.empty() ? reference : steps.back().survey, options);
+  RunErrors errors{.slots = sample.slots(),
+                   .clusters = sample.blocks().size(),
+                   .sampled_share = sample.share(),
+                   .subrays = reference.subrays()};
+  const std::vector<Sample> best = sample.simulate(reference);
+  std::vector<Sample> before = best;
+  for (const ErrorStep& step : steps) {
     std::vector<Sample> now = sample.simulate(step.survey);
     errors.parts.push_back(sample.errors(step.cause, before, now));
     before = std::move(now);

@@ -12,21 +12,29 @@
 
 /// Surveys of XML documents, ready to run. `make_simulation` makes them; running them needs only this header.
 namespace PULSECAST_NAMESPACE {
+struct Accuracy;
 struct ErrorSampleOptions;
 struct RunErrors;
+struct SettingsChoice;
 }  // namespace PULSECAST_NAMESPACE
 
 namespace PULSECAST_NAMESPACE::helios {
 
 struct CompiledSurvey;
 
-/// Receiver settings that trade accuracy for speed, for all channels. Default: those of the survey.
+/// Settings that trade accuracy for speed, for all channels. Default: those of the survey.
 struct ReceiverOverrides {
   std::optional<int> rings{};        ///< rings of subrays: `beamSampleQuality`
   std::optional<double> bin_size{};  ///< `binSize_ns` [s]
+  std::optional<int> orders{};       ///< of `<light>`: surfaces that scatter light in succession
+  std::optional<int> paths{};        ///< of `<light>`: random paths of a pulse
   bool ideal = false;                ///< no noise, no echo widths, no waveforms
   bool true_ranges = false;          ///< timed by `EchoTiming::true_range`, but with multi-bounce light
 
+  /// Settings of `Simulation::choose`, by its values: the first four.
+  [[nodiscard]] static ReceiverOverrides of(std::span<const double> values) {
+    return {static_cast<int>(values[0]), values[1], static_cast<int>(values[2]), static_cast<int>(values[3])};
+  }
   bool operator==(const ReceiverOverrides&) const = default;
 };
 
@@ -99,6 +107,12 @@ class Simulation {
   /// 128 bins a pulse: run_errors.hpp. `ErrorSampleOptions::reach` becomes half the length of the shortest pulse. May
   /// be called while a run goes on. @throws SettingError for options out of range
   [[nodiscard]] virtual RunErrors errors(const ErrorSampleOptions& options) const = 0;
+  /// Cheapest settings that reach an accuracy, of `ReceiverOverrides::of` its values, without the errors of the
+  /// instrument itself: accuracy.hpp. The reference has at least 2,030 subrays, 128 bins a pulse, the survey's timing.
+  /// @throws SettingError for an accuracy or options out of range
+  [[nodiscard]] virtual SettingsChoice choose(const Accuracy& accuracy, const ErrorSampleOptions& options) const = 0;
+  /// Settings of a reference. @param true_ranges as in `ReceiverOverrides`
+  [[nodiscard]] virtual ReceiverOverrides reference(bool true_ranges = false) const = 0;
 };
 
 }  // namespace PULSECAST_NAMESPACE::helios

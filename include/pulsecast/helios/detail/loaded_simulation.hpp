@@ -3,13 +3,13 @@
 #ifndef PULSECAST_HELIOS_DETAIL_LOADED_SIMULATION_HPP
 #define PULSECAST_HELIOS_DETAIL_LOADED_SIMULATION_HPP
 
+#include <pulsecast/helios/detail/adjustable.hpp>
 #include <pulsecast/helios/detail/scene_files.hpp>
 #include <pulsecast/helios/detail/survey_pipeline.hpp>
 #include <pulsecast/helios/make_simulation.hpp>
 #include <pulsecast/helios/scene.hpp>
 #include <pulsecast/helios/survey.hpp>
 #include <pulsecast/io/las.hpp>
-#include <pulsecast/run_errors.hpp>
 #include <pulsecast/uncertainty.hpp>
 
 namespace PULSECAST_NAMESPACE::helios {
@@ -207,6 +207,9 @@ template <class Receiver>
   const bool library = settings.library_physics, follows_light = settings.light_paths || survey.scene.follows_light(),
              waveforms = settings.waveforms && !overrides.ideal, noisy = settings.waveform_noise && !overrides.ideal,
              widths = settings.echo_width && !overrides.ideal;
+  LightSettings light = survey.scene.light_or_default();
+  light.orders = overrides.orders.value_or(light.orders);
+  light.paths = overrides.paths.value_or(light.paths);
   const Box bounds = loaded.scene->bounds();
   const double extent = bounds.empty() ? 0 : length(bounds.size());
   auto units = ReceiverGroups(survey.scanner).units(scanner, [&](const ChannelSettings& channel) {
@@ -220,7 +223,7 @@ template <class Receiver>
     return unit;
   });
   using Own = Survey<Legs<SurveyLeg>, SurveyFootprint, SurveyScene, SurveyDetector<Receiver>, SurveyLight>;
-  Own own(loaded.compiled->source, std::move(units), *loaded.scene, survey_light(survey, follows_light, library),
+  Own own(loaded.compiled->source, std::move(units), *loaded.scene, survey_light(survey, light, follows_light, library),
           loaded.seed);
   JoinedSurvey both{{own, loaded.scene}};
   if (settings.uncertainty)
@@ -278,26 +281,47 @@ class LoadedSimulation final : public Simulation {
   [[nodiscard]] std::unique_ptr<Simulation> with_receivers(const ReceiverOverrides& overrides) const override {
     return std::make_unique<LoadedSimulation>(loaded_, overrides);
   }
+  [[nodiscard]] ReceiverOverrides reference(bool true_ranges = false) const override {
+    const LightSettings light = loaded_->inputs->survey.scene.light_or_default();
+    return {.rings = std::clamp(2 * own_rings(), 26, 100),
+            .bin_size = pulse_length() / 128,
+            .orders = light.orders,
+            .paths = std::clamp(16 * light.paths, 1024, 100'000),
+            .ideal = true,
+            .true_ranges = true_ranges};
+  }
   [[nodiscard]] RunErrors errors(const ErrorSampleOptions& options) const override {
-    double pulse_length = 1;
-    int rings = 1;
-    for (const ChannelSettings& channel : loaded_->inputs->survey.scanner.channels) {
-      pulse_length = std::min(pulse_length, channel.pulse_length);
-      rings = std::max(rings, overrides_.rings.value_or(channel.waveform.rings));
-    }
-    const auto survey = [&](std::optional<int> of, std::optional<double> bin, bool true_ranges) {
-      return with_receivers({.rings = of, .bin_size = bin, .ideal = true, .true_ranges = true_ranges})->survey();
-    };
-    const std::vector<ErrorStep> steps{
-        {"sampling", survey(overrides_.rings, pulse_length / 128, true)},
-        {"estimator", survey(overrides_.rings, overrides_.bin_size, overrides_.true_ranges)},
-        {"instrument", joined_.survey}};
-    ErrorSampleOptions sample = options;
-    sample.reach = 0.25 * speed_of_light * pulse_length;
-    return errors_of_run(survey(std::clamp(2 * rings, 26, 100), pulse_length / 128, true), steps, sample);
+    const ReceiverOverrides best = reference(true);
+    ReceiverOverrides own = overrides_, sampling = overrides_;
+    own.ideal = sampling.ideal = sampling.true_ranges = true;
+    sampling.bin_size = best.bin_size;
+    const std::vector<ErrorStep> steps{{"sampling", with_receivers(sampling)->survey()},
+                                       {"estimator", with_receivers(own)->survey()},
+                                       {"instrument", joined_.survey}};
+    return errors_of_run(with_receivers(best)->survey(), steps, sampled(options));
+  }
+  [[nodiscard]] SettingsChoice choose(const Accuracy& accuracy, const ErrorSampleOptions& options) const override {
+    const double own_bin = finest_bin(overridden(loaded_->inputs->survey.scanner, overrides_));
+    return choose_settings(accuracy, adjustable(*this, pulse_length(), own_bin), sampled(options));
   }
 
  private:
+  [[nodiscard]] double pulse_length() const {
+    double shortest = 1;
+    for (const ChannelSettings& channel : loaded_->inputs->survey.scanner.channels)
+      shortest = std::min(shortest, channel.pulse_length);
+    return shortest;
+  }
+  [[nodiscard]] int own_rings() const {
+    int most = 1;
+    for (const ChannelSettings& channel : loaded_->inputs->survey.scanner.channels)
+      most = std::max(most, overrides_.rings.value_or(channel.waveform.rings));
+    return most;
+  }
+  [[nodiscard]] ErrorSampleOptions sampled(ErrorSampleOptions options) const {
+    options.reach = 0.25 * speed_of_light * pulse_length();
+    return options;
+  }
   [[nodiscard]] JoinedSurvey received(const ReceiverOverrides& overrides) {
     std::vector<std::string> of_receivers;
     JoinedSurvey joined_survey = loaded_->inputs->settings.library_physics

@@ -102,12 +102,12 @@ class SurveyLight {
   return channels.front().wavelength;
 }
 
-/// Transport of a survey: that of `<light>` and `<medium>`, if its scene has one.
+/// Transport of a survey: that of `light` and `<medium>`, if its scene asks for one.
 /// @throws SettingError for boxes of media that overlap, and presets beyond the wavelength
-[[nodiscard]] inline SurveyLight survey_light(const SurveySettings& survey, bool follows_light, bool library_physics) {
+[[nodiscard]] inline SurveyLight survey_light(const SurveySettings& survey, const LightSettings& light,
+                                              bool follows_light, bool library_physics) {
   if (!follows_light) return SurveyLight(DirectLight{.spread_planes = library_physics});
   const SceneSettings& scene = survey.scene;
-  const LightSettings light = scene.light.empty() ? LightSettings{} : scene.light.front();
   const bool by_wavelength =
       std::any_of(scene.media.begin(), scene.media.end(), [](const auto& m) { return m.preset != MediumPreset::none; });
   return SurveyLight(

@@ -256,6 +256,8 @@ struct SceneSettings {
   }
   /// True if its surfaces reflect or transmit light further.
   [[nodiscard]] bool follows_light() const { return !light.empty() || !media.empty(); }
+  /// Settings of its light, or the defaults.
+  [[nodiscard]] LightSettings light_or_default() const { return light.empty() ? LightSettings{} : light.front(); }
 
   void validate() const {
     check_fields(*this);

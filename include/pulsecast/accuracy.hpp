@@ -1,0 +1,217 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#ifndef PULSECAST_ACCURACY_HPP
+#define PULSECAST_ACCURACY_HPP
+
+#include <functional>
+#include <set>
+
+#include <pulsecast/run_errors.hpp>
+
+/// The cheapest settings of a survey that reach an accuracy, found by trial on random samples of its slots:
+///
+///     const SettingsChoice choice = choose_settings({.range = 5_mm}, adjustable);
+///     const AnySurvey survey = adjustable.survey(choice.values);
+namespace PULSECAST_NAMESPACE {
+
+/// Greatest errors of 95 % of the echoes, and greatest shares of echoes that are lost or invented.
+struct Accuracy {
+  static constexpr double any = std::numeric_limits<double>::infinity();  ///< no limit
+  double range = any;                                                     ///< difference in range [m]
+  double position = any;                                                  ///< distance of the points [m]
+  double intensity = any;                                                 ///< relative difference in amplitude
+  double echoes = 0.01;  ///< share of the expected echoes that are lost, and of the found ones that are invented
+
+  void validate() const {
+    const auto require = [](const char* name, double limit, const char* unit) {
+      if (limit != any) require_positive(name, limit, unit);
+    };
+    require("Accuracy::range", range, "m");
+    require("Accuracy::position", position, "m");
+    require("Accuracy::intensity", intensity, "");
+    require("Accuracy::echoes", echoes, "");
+  }
+
+  /// Limit of a figure; `any` for none.
+  [[nodiscard]] double limit(ErrorFigure f) const noexcept {
+    switch (f) {
+      case ErrorFigure::range_95:
+        return range;
+      case ErrorFigure::position_95:
+        return position;
+      case ErrorFigure::intensity_95:
+        return intensity;
+      case ErrorFigure::lost:
+      case ErrorFigure::invented:
+        return echoes;
+      default:
+        return any;
+    }
+  }
+
+  /// Greatest ratio of a figure to its limit, with the interval of the figure that has the greatest upper limit; up to
+  /// 1 the accuracy is reached, for certain if `high` is.
+  [[nodiscard]] Estimate share_of_limits(const EchoErrors& errors) const noexcept {
+    Estimate most{};
+    for (std::size_t f = 0; f < error_figure_count; ++f) {
+      const double of = limit(static_cast<ErrorFigure>(f));
+      if (of == any) continue;
+      const Estimate& e = errors.figures[f];
+      most = {std::max(most.value, e.value / of), std::max(most.low, e.low / of), std::max(most.high, e.high / of)};
+    }
+    return most;
+  }
+};
+
+/// A setting that trades accuracy for speed, such as the number of subrays.
+struct SettingLadder {
+  std::string name;            ///< for messages
+  std::vector<double> values;  ///< from the cheapest to the most exact
+  double reference;            ///< value of the reference, more exact than all
+};
+
+/// Survey with settings to choose. The functions take a value of each ladder.
+struct AdjustableSurvey {
+  using Values = std::span<const double>;
+  std::vector<SettingLadder> ladders{};       ///< at least one
+  std::function<AnySurvey(Values)> survey{};  ///< with these settings; the slots do not depend on them
+  std::function<double(Values)> effort{};     ///< relative time of a pulse; empty: the number of subrays
+
+  void validate() const {
+    require_within("AdjustableSurvey::ladders (number)", ladders.size(), 1, 16, "");
+    for (const SettingLadder& ladder : ladders)
+      require_within(text::joined({"SettingLadder::values (number) of '", ladder.name, "'"}), ladder.values.size(), 1,
+                     1000, "");
+    if (!survey) throw SettingError("AdjustableSurvey::survey", 0, "", "a function");
+  }
+};
+
+/// Settings that were tried.
+struct SettingsTrial {
+  std::vector<double> values{};  ///< of each ladder
+  double effort = 0;             ///< relative time of a pulse
+  EchoErrors errors{};           ///< against the reference
+};
+
+/// Result of `choose_settings`.
+struct SettingsChoice : SettingsTrial {
+  bool reached = false;                 ///< false: no settings are known to reach the accuracy; these come nearest
+  std::uint64_t slots = 0;              ///< slots of the last sample
+  double sampled_share = 0;             ///< its part of the survey
+  std::size_t subrays = 0;              ///< subrays of a pulse in the reference
+  std::vector<SettingsTrial> trials{};  ///< on the last sample, by effort
+};
+
+namespace detail {
+
+/// Search for the cheapest settings on samples. A finer value is taken to have no greater errors: settings that are in
+/// no respect finer than some that certainly fail are not tried.
+class SettingsSearch {
+ public:
+  SettingsSearch(const Accuracy& accuracy, const AdjustableSurvey& adjustable)
+      : accuracy_(accuracy), adjustable_(adjustable) {}
+
+  std::vector<SettingsTrial> trials{};  ///< on the last sample, by effort
+  double tried = 0;                     ///< sum of their efforts
+  double uncertain = 0;                 ///< effort of the cheapest of them that may reach the accuracy, or may not
+
+  /// Tries the cheapest settings first, until some certainly reach the accuracy: the last trial. False if none do.
+  [[nodiscard]] bool search(const ErrorSample& sample, const std::vector<Sample>& expected) {
+    trials.clear();
+    tried = uncertain = 0;
+    std::set<std::pair<double, Steps>> next;
+    const auto add = [&](const Steps& steps) { next.emplace(effort(steps), steps); };
+    for (add(Steps(adjustable_.ladders.size(), 0)); !next.empty();) {
+      const auto [effort, steps] = *next.begin();
+      next.erase(next.begin());
+      for (std::size_t k = 0; k < steps.size(); ++k) {
+        Steps finer = steps;
+        if (++finer[k] < adjustable_.ladders[k].values.size()) add(finer);
+      }
+      if (fails(steps)) continue;
+      SettingsTrial& trial = trials.emplace_back(SettingsTrial{values(steps), effort, {}});
+      tried += effort;
+      trial.errors = sample.errors("", expected, sample.simulate(adjustable_.survey(trial.values))).all;
+      const Estimate share = accuracy_.share_of_limits(trial.errors);
+      if (share.high <= 1) return true;
+      if (share.low > 1) failed_.push_back(steps);
+      if (share.low <= 1 && uncertain == 0) uncertain = effort;
+    }
+    return false;
+  }
+
+ private:
+  using Steps = std::vector<std::size_t>;  // positions on the ladders
+
+  [[nodiscard]] std::vector<double> values(const Steps& steps) const {
+    std::vector<double> all;
+    for (std::size_t k = 0; k < steps.size(); ++k) all.push_back(adjustable_.ladders[k].values[steps[k]]);
+    return all;
+  }
+  [[nodiscard]] double effort(const Steps& steps) {
+    double& known = efforts_[steps];
+    if (known > 0) return known;
+    const std::vector<double> of = values(steps);
+    return known = adjustable_.effort ? adjustable_.effort(of) : static_cast<double>(adjustable_.survey(of).subrays());
+  }
+  [[nodiscard]] bool fails(const Steps& steps) const {
+    return std::ranges::any_of(
+        failed_, [&](const Steps& other) { return std::ranges::equal(steps, other, std::less_equal<>()); });
+  }
+
+  const Accuracy& accuracy_;
+  const AdjustableSurvey& adjustable_;
+  std::map<Steps, double> efforts_{};
+  std::vector<Steps> failed_{};
+};
+
+}  // namespace detail
+
+/// Cheapest settings of a survey with which the upper limits of all asked errors are within what is asked, against the
+/// same slots with the settings of the reference. Samples grow by four, up to 16 times `ErrorSampleOptions::clusters`,
+/// while that may save more time in ten runs of the survey than it takes. The same choice on any number of threads.
+/// @throws SettingError for settings out of range
+[[nodiscard]] inline SettingsChoice choose_settings(const Accuracy& accuracy, const AdjustableSurvey& adjustable,
+                                                    const ErrorSampleOptions& options = {}) {
+  accuracy.validate();
+  adjustable.validate();
+  detail::SettingsSearch search(accuracy, adjustable);
+  std::vector<double> cheapest, best;
+  for (const SettingLadder& ladder : adjustable.ladders) {
+    cheapest.push_back(ladder.values.front());
+    best.push_back(ladder.reference);
+  }
+  const AnySurvey pilot = adjustable.survey(cheapest), reference = adjustable.survey(best);
+  SettingsChoice choice;
+  choice.subrays = reference.subrays();
+  ErrorSampleOptions sampled = validated(options);
+  // no event in n clusters leaves a share of up to 4 in n possible
+  sampled.clusters = std::max(sampled.clusters, static_cast<std::size_t>(std::min(1e5, 8 / accuracy.echoes)));
+  for (int round = 0; round < 3; ++round, sampled.clusters *= 4) {
+    ++sampled.seed;
+    const ErrorSample sample(pilot, sampled);
+    choice.reached = search.search(sample, sample.simulate(reference));
+    choice.slots = sample.slots();
+    choice.sampled_share = sample.share();
+    if (sample.share() == 1) break;
+    if (choice.reached) {
+      const double saved = search.uncertain > 0 ? search.trials.back().effort - search.uncertain : 0,
+                   run = static_cast<double>(sample.slots()) / sample.share();
+      if (10 * saved * run <= 4 * static_cast<double>(sample.slots() * choice.subrays)) break;
+    } else if (search.uncertain == 0) {
+      break;
+    }
+  }
+  choice.trials = std::move(search.trials);
+  const auto nearest = [&](const SettingsTrial& a, const SettingsTrial& b) {
+    return accuracy.share_of_limits(a.errors).value < accuracy.share_of_limits(b.errors).value;
+  };
+  if (choice.trials.empty()) return choice;
+  static_cast<SettingsTrial&>(choice) =
+      choice.reached ? choice.trials.back() : *std::ranges::min_element(choice.trials, nearest);
+  return choice;
+}
+
+}  // namespace PULSECAST_NAMESPACE
+
+#endif
