@@ -39,7 +39,9 @@ std::string report_of(const RunErrors& errors, const RunOrigin& origin, const Ru
   JsonWriter json;
   json.begin_object().member("program", "pulsecast").member("version", PULSECAST_VERSION);
   json.member("seed", origin.seed).member("repetition", origin.repetition);
-  json.member("options", origin.options).member("settings", origin.settings).key("inputs").begin_object();
+  json.member("options", origin.options).member("settings", origin.settings);
+  if (!origin.chosen.empty()) json.member("chosen_settings", origin.chosen);
+  json.key("inputs").begin_object();
   for (const auto& [path, digest] : origin.inputs)
     if (digest != hex(io::Fingerprint{})) json.member(path, digest);  // those that are there
   json.end_object().key("totals").begin_object();

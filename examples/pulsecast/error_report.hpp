@@ -19,6 +19,7 @@ struct RunOrigin {
   std::map<std::string, std::string> inputs{};  ///< input files, with their fingerprints
   std::uint64_t seed = 0;
   int repetition = 0;  ///< from 0
+  std::string chosen{};  ///< settings that `--accuracy` chose, in place of those of the survey
 };
 
 /// Errors of a run (`--errors`), computed while the run goes on.

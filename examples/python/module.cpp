@@ -18,6 +18,7 @@
 
 #include <pybind11/stl/filesystem.h>
 
+#include <pulsecast/accuracy.hpp>
 #include <pulsecast/helios/document.hpp>
 #include <pulsecast/helios/make_simulation.hpp>
 #include <pulsecast/helios/survey.hpp>
@@ -26,7 +27,6 @@
 #include <pulsecast/material/water_types.hpp>
 #include <pulsecast/python/bind.hpp>
 #include <pulsecast/python/ray_queries.hpp>
-#include <pulsecast/run_errors.hpp>
 #include <pulsecast/scene/scene.hpp>
 #include <pulsecast/shape/triangle_mesh.hpp>
 #include <pulsecast/version.hpp>
@@ -246,6 +246,29 @@ py::dict errors_of(const Simulation& simulation, std::size_t clusters, PulseInde
   return parts;
 }
 
+/// The simulation with settings that reach an accuracy, or come nearest, and what is known of them.
+py::tuple chosen(const Simulation& simulation, std::optional<double> range, std::optional<double> position,
+                 std::optional<double> intensity, double echoes, std::size_t clusters, PulseIndex length,
+                 std::uint64_t seed, unsigned threads) {
+  const Accuracy accuracy{range.value_or(Accuracy::any), position.value_or(Accuracy::any),
+                          intensity.value_or(Accuracy::any), echoes};
+  const SettingsChoice choice = [&] {
+    const py::gil_scoped_release release;
+    return simulation.choose(accuracy, {.seed = seed, .clusters = clusters, .length = length, .threads = threads});
+  }();
+  const auto overrides = helios::ReceiverOverrides::of(choice.values);
+  py::dict known;
+  known["reached"] = choice.reached;
+  known["rings"] = *overrides.rings;
+  known["bin_size"] = *overrides.bin_size;
+  known["orders"] = *overrides.orders;
+  known["paths"] = *overrides.paths;
+  known["errors"] = dict_of(choice.errors);
+  known["slots"] = choice.slots;
+  known["subrays"] = choice.subrays;
+  return py::make_tuple(simulation.with_receivers(overrides), known);
+}
+
 py::array legs_of(const Simulation& simulation) {
   python::Rows<LegRow> rows;
   for (const CompiledSurvey::Leg& leg : simulation.compiled().legs)
@@ -367,6 +390,22 @@ void bind_raycasting_scene(py::module_& m) {
   python::bind_ray_queries(scene);
 }
 
+void bind_accuracy(py::class_<Simulation>& simulation) {
+  simulation
+      .def("errors", &errors_of, py::kw_only(), "clusters"_a = 1024, "length"_a = 4, "seed"_a = 0, "threads"_a = 0,
+           "Errors of a run, by a random sample of so many clusters of so many consecutive pulse slots at reference "
+           "quality: a dict by cause (sampling, estimator, instrument, together), of dicts `all` and `classes`, of "
+           "tuples of value, lower and upper 95 % limit by figure [m, or a share].")
+      .def("choose", &chosen, py::kw_only(), "range"_a = py::none(), "position"_a = py::none(),
+           "intensity"_a = py::none(), "echoes"_a = 0.01, "clusters"_a = 1024, "length"_a = 4, "seed"_a = 0,
+           "threads"_a = 0,
+           "The cheapest settings that reach an accuracy, by trial on random samples: the Simulation with them, and a "
+           "dict of rings, bin_size [s], orders, paths; reached: False if none are known to, and these come nearest; "
+           "errors: their figures as in `errors`, without those of the instrument; slots of the sample, subrays of the "
+           "reference. range, position [m], intensity: limits of 95 % of the echoes; echoes: of the shares lost and "
+           "invented. Raises SettingError.");
+}
+
 void bind_simulation(py::module_& m) {
   PYBIND11_NUMPY_DTYPE(PoseRow, time, x, y, z, roll, pitch, yaw, leg);
   PYBIND11_NUMPY_DTYPE(LegRow, number, active, start, duration, pulse_rate, first, end);
@@ -401,10 +440,6 @@ void bind_simulation(py::module_& m) {
            "Poses of the platform every `interval` seconds (from 1e-6) of each leg and at its end: a structured array "
            "of time [s], "
            "x, y, z [m, world], roll, pitch, yaw [rad; yaw clockwise from north] and leg.")
-      .def("errors", &errors_of, py::kw_only(), "clusters"_a = 1024, "length"_a = 4, "seed"_a = 0, "threads"_a = 0,
-           "Errors of a run, by a random sample of so many clusters of so many consecutive pulse slots at reference "
-           "quality: a dict by cause (sampling, estimator, instrument, together), of dicts `all` and `classes`, of "
-           "tuples of value, lower and upper 95 % limit by figure [m, or a share].")
       .def_property_readonly(
           "legs", &legs_of,
           "Structured array: number, active, start [s], duration [s], pulse_rate [Hz]; first, end: its slots.")
@@ -426,6 +461,7 @@ void bind_simulation(py::module_& m) {
     return [&s](const RunOptions& options, const auto& sink) { return pulsecast::run(s.survey(), options, sink); };
   };
   python::bind_run(simulation, runner, [](const Simulation& s) { return s.points(); });
+  bind_accuracy(simulation);
 }
 
 }  // namespace

@@ -112,13 +112,12 @@ class SettingsSearch {
       : accuracy_(accuracy), adjustable_(adjustable) {}
 
   std::vector<SettingsTrial> trials{};  ///< on the last sample, by effort
-  double tried = 0;                     ///< sum of their efforts
   double uncertain = 0;                 ///< effort of the cheapest of them that may reach the accuracy, or may not
 
   /// Tries the cheapest settings first, until some certainly reach the accuracy: the last trial. False if none do.
   [[nodiscard]] bool search(const ErrorSample& sample, const std::vector<Sample>& expected) {
     trials.clear();
-    tried = uncertain = 0;
+    uncertain = 0;
     std::set<std::pair<double, Steps>> next;
     const auto add = [&](const Steps& steps) { next.emplace(effort(steps), steps); };
     for (add(Steps(adjustable_.ladders.size(), 0)); !next.empty();) {
@@ -130,7 +129,6 @@ class SettingsSearch {
       }
       if (fails(steps)) continue;
       SettingsTrial& trial = trials.emplace_back(SettingsTrial{values(steps), effort, {}});
-      tried += effort;
       trial.errors = sample.errors("", expected, sample.simulate(adjustable_.survey(trial.values))).all;
       const Estimate share = accuracy_.share_of_limits(trial.errors);
       if (share.high <= 1) return true;
@@ -169,7 +167,7 @@ class SettingsSearch {
 
 /// Cheapest settings of a survey with which the upper limits of all asked errors are within what is asked, against the
 /// same slots with the settings of the reference. Samples grow by four, up to 16 times `ErrorSampleOptions::clusters`,
-/// while that may save more time in ten runs of the survey than it takes. The same choice on any number of threads.
+/// while that takes some seconds, or may save more in ten runs of the survey. The same choice on any number of threads.
 /// @throws SettingError for settings out of range
 [[nodiscard]] inline SettingsChoice choose_settings(const Accuracy& accuracy, const AdjustableSurvey& adjustable,
                                                     const ErrorSampleOptions& options = {}) {
@@ -185,22 +183,21 @@ class SettingsSearch {
   SettingsChoice choice;
   choice.subrays = reference.subrays();
   ErrorSampleOptions sampled = validated(options);
-  // no event in n clusters leaves a share of up to 4 in n possible
-  sampled.clusters = std::max(sampled.clusters, static_cast<std::size_t>(std::min(1e5, 8 / accuracy.echoes)));
-  for (int round = 0; round < 3; ++round, sampled.clusters *= 4) {
+  const std::size_t most = 16 * sampled.clusters;
+  const double for_none = std::fmin(8 / accuracy.echoes, 1e9);  // no event in n clusters: a share of up to 4 in n
+  sampled.clusters = std::clamp(static_cast<std::size_t>(for_none), sampled.clusters, most);
+  for (bool more = true; more; sampled.clusters = std::min(most, 4 * sampled.clusters)) {
     ++sampled.seed;
     const ErrorSample sample(pilot, sampled);
     choice.reached = search.search(sample, sample.simulate(reference));
     choice.slots = sample.slots();
     choice.sampled_share = sample.share();
-    if (sample.share() == 1) break;
-    if (choice.reached) {
-      const double saved = search.uncertain > 0 ? search.trials.back().effort - search.uncertain : 0,
-                   run = static_cast<double>(sample.slots()) / sample.share();
-      if (10 * saved * run <= 4 * static_cast<double>(sample.slots() * choice.subrays)) break;
-    } else if (search.uncertain == 0) {
-      break;
-    }
+    more = sample.share() < 1 && sampled.clusters < most && search.uncertain > 0;
+    if (!choice.reached) continue;
+    constexpr double few = 5e7;  // rays that take some seconds
+    const double cost = 4 * static_cast<double>(choice.slots * choice.subrays), effort = search.trials.back().effort,
+                 runs = 10 * static_cast<double>(choice.slots) / choice.sampled_share;
+    more = more && effort > 1.1 * search.uncertain && (cost < few || cost < (effort - search.uncertain) * runs);
   }
   choice.trials = std::move(search.trials);
   const auto nearest = [&](const SettingsTrial& a, const SettingsTrial& b) {

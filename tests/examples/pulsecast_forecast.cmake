@@ -11,10 +11,13 @@ include(${CMAKE_CURRENT_LIST_DIR}/expect.cmake)
 
 # quantities and their units
 foreach(range 5 0mm -5mm 5s 5mm2 mm nan 1e999mm)
-  expect(2 "range-error.*'${range}': expected a length" forecast ${SURVEY} --range-error=${range})
+  expect(2 "accuracy.*'range=${range}': expected a length" forecast ${SURVEY} --accuracy=range=${range})
 endforeach()
 foreach(intensity 2x 0 0% %)
-  expect(2 "intensity-error.*expected a share" forecast ${SURVEY} --intensity-error ${intensity})
+  expect(2 "accuracy.*'intensity=${intensity}': expected a share" forecast ${SURVEY} --accuracy range=5mm,intensity=${intensity})
+endforeach()
+foreach(limits "ranges=5mm" "5mm" ",")
+  expect(2 "accuracy.*expected range=, position=, intensity= or echoes=" ${SURVEY} --accuracy ${limits})
 endforeach()
 foreach(time 10 5m 1d 0s)
   expect(2 "time.*'${time}': expected a duration" forecast ${SURVEY} --time ${time})
@@ -22,7 +25,7 @@ endforeach()
 foreach(memory 4 4G 4Gbit 0GB)
   expect(2 "memory.*'${memory}': expected a size" forecast ${SURVEY} --memory ${memory})
 endforeach()
-foreach(asked "--range-error;5mm" "--time;10min" "--apply")
+foreach(asked "--time;10min" "--apply")
   expect(2 "is for forecast only" ${SURVEY} ${asked})
 endforeach()
 expect(2 "--apply needs a limit" forecast ${SURVEY} --apply)
@@ -37,12 +40,13 @@ string(REPLACE "pulseFreqs_Hz=\"2000\"" "pulseFreqs_Hz=\"50\"" before "${before}
 file(WRITE ${FOLDER}/own/survey.xml "${before}")
 
 # what fits and what does not, of each kind and in any unit
-expect(0 "current settings: beamSampleQuality 2 .7 subrays., binSize_ns 0.25.*run time.*memory.*points.*files.*range error.*intensity error" forecast own/survey.xml)
-foreach(able "--time;2h" "--time;600MIN" "--memory;900 GB" "--memory;500GiB" "--range-error;10m" "--range-error;1000cm" "--intensity-error;900%"
-             "--intensity-error;9" "--time;2h;--memory;900GB;--range-error;10m;--intensity-error;9")
+expect(0 "current settings: beamSampleQuality 2 .7 subrays., binSize_ns 0.25.*run time.*memory.*points.*files.*range, 95 %.*intensity, 95 %.*lost echoes.*invented echoes" forecast own/survey.xml)
+foreach(able "--time;2h" "--time;600MIN" "--memory;900 GB" "--memory;500GiB" "--accuracy;range=10m,echoes=9" "--accuracy;RANGE=1000cm,echoes=900%"
+             "--accuracy;intensity=9,echoes=9" "--time;2h;--memory;900GB;--accuracy;range=10m,position=20 m,intensity=9,echoes=9")
   expect(0 "best within the limits: beamSampleQuality" forecast own/survey.xml ${able})
 endforeach()
-foreach(unable "--time;0.001ms" "--memory;0.001kB" "--range-error;1e-9um" "--intensity-error;1e-12%" "--range-error;10m;--memory;1kB")
+foreach(unable "--time;0.001ms" "--memory;0.001kB" "--accuracy;range=1e-9um" "--accuracy;intensity=1e-12%"
+               "--accuracy;range=10m,echoes=9;--memory;1kB")
   expect(1 "nearest: beamSampleQuality.*error: no settings meet the limits" forecast own/survey.xml ${unable} --apply own/untouched.xml)
 endforeach()
 if(EXISTS ${FOLDER}/own/untouched.xml)
@@ -117,7 +121,7 @@ function(applied out)
 endfunction()
 
 # What is applied is what was chosen, and nothing else is touched.
-applied(rings own/survey.xml --range-error 10m --apply own/new.xml)
+applied(rings own/survey.xml --accuracy range=10m,echoes=9 --apply own/new.xml)
 file(READ ${FOLDER}/own/new.xml after)
 set(element "\n *<FWFSettings beamSampleQuality=\"${rings}\" binSize_ns=\"[0-9.]+\"/>")
 if(NOT after MATCHES "<survey [^>]*>${element}")
@@ -136,9 +140,9 @@ endif()
 file(READ ${FOLDER}/own/new.xml text)  # what stands there is replaced, however it is written
 string(REGEX REPLACE "beamSampleQuality=.${rings}. binSize_ns=\"[0-9.]+\"" "\n  winSize_ns='1' beamSampleQuality\n = '20'" text "${text}")
 file(WRITE ${FOLDER}/own/new.xml "${text}")
-applied(rings own/survey.xml --range-error 10m --apply)
+applied(rings own/survey.xml --accuracy range=10m,echoes=9 --apply)
 expect(0 "current settings: beamSampleQuality ${rings} " forecast own/survey.xml)
-applied(rings own/new.xml --range-error 10m --apply)
+applied(rings own/new.xml --accuracy range=10m,echoes=9 --apply)
 file(READ ${FOLDER}/own/new.xml text)
 if(NOT text MATCHES "<FWFSettings binSize_ns=\"[0-9.]+\" *\n  winSize_ns='1' beamSampleQuality\n = '${rings}'/>")
   message(SEND_ERROR "settings were not replaced in their place:\n${text}")
@@ -151,7 +155,7 @@ file(CHMOD ${FOLDER}/elsewhere/real.xml PERMISSIONS OWNER_READ OWNER_WRITE GROUP
 file(CREATE_LINK ../elsewhere/real.xml ${FOLDER}/own/survey.xml SYMBOLIC)
 string(REPLACE "= '${rings}'" "= '20'" text "${text}")
 file(WRITE ${FOLDER}/elsewhere/real.xml "${text}")
-applied(rings own/survey.xml --range-error 10m --apply)
+applied(rings own/survey.xml --accuracy range=10m,echoes=9 --apply)
 file(READ ${FOLDER}/elsewhere/real.xml text)
 execute_process(COMMAND stat -c %A elsewhere/real.xml own/survey.xml WORKING_DIRECTORY ${FOLDER} OUTPUT_VARIABLE modes)
 if(NOT modes MATCHES "^-rw-r-----\nl" OR NOT text MATCHES "beamSampleQuality\n* *= *'${rings}'")
@@ -162,8 +166,21 @@ if(left MATCHES "part")
   message(SEND_ERROR "a trial is left: ${left}")
 endif()
 
-expect(1 "error" forecast own/survey.xml --range-error 10m --apply nowhere/new.xml)  # there is no such folder
-expect(1 "plane.obj" forecast own/survey.xml --range-error 10m --apply astray.xml)  # its files would not be found from there
+expect(1 "error" forecast own/survey.xml --accuracy range=10m,echoes=9 --apply nowhere/new.xml)  # there is no such folder
+expect(1 "plane.obj" forecast own/survey.xml --accuracy range=10m,echoes=9 --apply astray.xml)  # its files would not be found from there
 if(EXISTS ${FOLDER}/astray.xml OR EXISTS ${FOLDER}/astray.xml.part)
   message(SEND_ERROR "a survey was written that cannot be read")
+endif()
+
+# A run takes the cheapest settings that reach an accuracy, and says what it reached; without such settings it does not begin.
+expect(0 "accuracy range=10m,echoes=900%.*chosen +beamSampleQuality.*range, 95 %: .*lost echoes: .*errors by a sample.*sampling.*instrument"
+       own/survey.xml --accuracy range=10m,echoes=9 --seed 1 --output accurate)
+file(GLOB reports ${FOLDER}/accurate/*/*/report.json)
+if(NOT reports)
+  message(SEND_ERROR "a run with an accuracy has no report.json")
+endif()
+expect(1 "accuracy range=1e-12.*mm.*no settings are known to reach it; nearest are beamSampleQuality [0-9]+ .*lost echoes"
+       own/survey.xml --accuracy range=1e-9um --seed 1 --output inaccurate)
+if(EXISTS ${FOLDER}/inaccurate)
+  message(SEND_ERROR "a run began although no settings reach the accuracy")
 endif()

@@ -139,6 +139,38 @@ TEST_CASE("errors of a run are told apart: noise of ranges is the instrument's, 
   CHECK(range(errors(false, {.rings = 1, .ideal = true}), 0) > 1.5 * range(noisy, 0));
 }
 
+TEST_CASE("an accuracy asked for is kept on a fence, where a single ray loses echoes, and no ring costs less") {
+  MeshData slats;  // 5 cm wide, every 25 cm, 1 m above the plane
+  for (int k = -40; k < 40; ++k) {
+    const auto first = static_cast<std::uint32_t>(slats.vertices.size());
+    const double x = 0.25 * k;
+    slats.vertices.insert(slats.vertices.end(), {{x, -60, 1}, {x + 0.05, -60, 1}, {x + 0.05, 60, 1}, {x, 60, 1}});
+    slats.triangles.insert(slats.triangles.end(), {{first, first + 1, first + 2}, {first, first + 2, first + 3}});
+  }
+  SurveySettings s = survey();
+  s.scanner.channels[0].divergence = 5e-3;
+  const auto simulation = make_simulation(s, {.seed = 3, .meshes = {plane(), {.data = slats}}});
+  const auto lost = [&](const ReceiverOverrides& of) {
+    ReceiverOverrides settings = of;
+    settings.ideal = true;
+    return simulation->with_receivers(settings)
+        ->errors({.seed = 9, .clusters = 100'000})
+        .parts.front()
+        .all[ErrorFigure::lost]
+        .value;
+  };
+  CHECK(lost({.rings = 1}) > 0.05);
+  const SettingsChoice choice = simulation->choose({.range = 0.01, .echoes = 0.02}, {.seed = 1});
+  CHECK(choice.reached);
+  CHECK(choice.subrays >= 2000);
+  const auto chosen = ReceiverOverrides::of(choice.values);
+  REQUIRE(*chosen.rings > 1);
+  CHECK(lost(chosen) <= 0.02);
+  CHECK(lost({.rings = *chosen.rings - 1}) > 0.02);
+  CHECK(!simulation->choose({.range = 1e-12}, {.clusters = 100}).reached);
+  CHECK_THROWS_AS((void)simulation->choose({.range = -1}, {}), SettingError);
+}
+
 TEST_CASE("a repetition draws noise of its own, and a receiver without rings has its central ray") {
   const support::TemporaryFolder folder;
   std::ofstream(folder / "wall.obj") << "v -5 50 0\nv 5 50 0\nv 0 50 9\nf 1 2 3\n";

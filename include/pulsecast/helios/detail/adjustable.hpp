@@ -5,7 +5,6 @@
 
 #include <pulsecast/accuracy.hpp>
 #include <pulsecast/helios/simulation.hpp>
-#include <pulsecast/scanner/footprint.hpp>
 
 namespace PULSECAST_NAMESPACE::helios::detail {
 

@@ -283,7 +283,10 @@ class LoadedSimulation final : public Simulation {
   }
   [[nodiscard]] ReceiverOverrides reference(bool true_ranges = false) const override {
     const LightSettings light = loaded_->inputs->survey.scene.light_or_default();
-    return {.rings = std::clamp(2 * own_rings(), 26, 100),
+    int rings = 1;
+    for (const ChannelSettings& channel : loaded_->inputs->survey.scanner.channels)
+      rings = std::max(rings, overrides_.rings.value_or(channel.waveform.rings));
+    return {.rings = std::clamp(2 * rings, 26, 100),
             .bin_size = pulse_length() / 128,
             .orders = light.orders,
             .paths = std::clamp(16 * light.paths, 1024, 100'000),
@@ -307,16 +310,8 @@ class LoadedSimulation final : public Simulation {
 
  private:
   [[nodiscard]] double pulse_length() const {
-    double shortest = 1;
-    for (const ChannelSettings& channel : loaded_->inputs->survey.scanner.channels)
-      shortest = std::min(shortest, channel.pulse_length);
-    return shortest;
-  }
-  [[nodiscard]] int own_rings() const {
-    int most = 1;
-    for (const ChannelSettings& channel : loaded_->inputs->survey.scanner.channels)
-      most = std::max(most, overrides_.rings.value_or(channel.waveform.rings));
-    return most;
+    const auto& channels = loaded_->inputs->survey.scanner.channels;
+    return std::ranges::min(channels, {}, &ChannelSettings::pulse_length).pulse_length;
   }
   [[nodiscard]] ErrorSampleOptions sampled(ErrorSampleOptions options) const {
     options.reach = 0.25 * speed_of_light * pulse_length();
