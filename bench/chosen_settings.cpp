@@ -154,7 +154,7 @@ void measure(const Place& place, std::size_t choices) {
   adjustable.survey = [&](std::span<const double> v) {
     return AnySurvey(v[0] > subrays.back() ? best->survey : find(v).survey);
   };
-  adjustable.effort = [](std::span<const double> v) { return v[0] + 5 + (v[1] == analytic ? 2 : 0.4e-9 / v[1]); };
+  adjustable.effort = [](std::span<const double> v) { return v[0] + 10 + (v[1] == analytic ? 0 : 3 + 0.4e-9 / v[1]); };
   for (const Accuracy& asked : {Accuracy{.range = 5_mm}, Accuracy{.range = 2_cm, .intensity = 0.05, .echoes = 0.02}}) {
     const Candidate* cheapest = nullptr;
     for (const Candidate& c : all)

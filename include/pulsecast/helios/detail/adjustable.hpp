@@ -35,7 +35,7 @@ namespace PULSECAST_NAMESPACE::helios::detail {
       // in rays: bins and the rest of a pulse by docs/tradeoff.md; two for each surface of a path
       .effort =
           [pulse_length](AdjustableSurvey::Values values) {
-            return static_cast<double>(RingFootprint(static_cast<std::size_t>(values[0])).size()) + 5 +
+            return static_cast<double>(RingFootprint(static_cast<std::size_t>(values[0])).size()) + 10 +
                    0.1 * pulse_length / values[1] + 2 * (values[2] - 1) * values[3];
           }};
 }
