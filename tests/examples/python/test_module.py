@@ -536,6 +536,21 @@ def test_errors_of_a_run_are_told_apart_by_cause_and_class(survey):
         simulation(survey).errors(clusters=1)
 
 
+def test_settings_that_reach_an_accuracy_are_chosen(survey):
+    run = simulation(survey)
+    chosen, known = run.choose(range=0.01, echoes=0.02, clusters=200, seed=1, threads=1)
+    assert known["reached"] and known["subrays"] >= 2000 and known["slots"] > 0
+    assert known["errors"]["range_95"][2] <= 0.01 and known["errors"]["lost"][2] <= 0.02
+    assert len(chosen) == len(run) and known["rings"] >= 1 and 0 < known["bin_size"] <= 1e-9
+    errors = chosen.errors(clusters=200, seed=9, threads=1)["sampling"]["all"]
+    assert errors["range_95"][0] <= 0.01 and errors["lost"][0] <= 0.02
+    nearest, known = run.choose(range=1e-12, clusters=50, threads=1)
+    assert not known["reached"] and len(nearest) == len(run)
+    for limits in ({"range": 0}, {"intensity": -1}, {"echoes": float("nan")}, {"clusters": 1}):
+        with pytest.raises(pulsecast.SettingError):
+            run.choose(**limits)
+
+
 def test_memory_is_given_back(survey):
     def peak():
         return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
