@@ -148,11 +148,11 @@ TEST_CASE("what no settings reach is said, with the nearest") {
 TEST_CASE("settings coarser than some that fail are not tried") {
   AdjustableSurvey adjustable{.ladders = {{"a", {0, 1}, 9}, {"b", {0, 1}, 9}}};
   adjustable.survey = [](AdjustableSurvey::Values v) { return survey_of({.range = v[0] < 1 ? 1.0 : 0.0}, 200); };
-  adjustable.effort = [](AdjustableSurvey::Values v) { return v[1] == 0 ? 10 + v[0] : 5.0; };
-  // (0, 0) at 10; (0, 1) is cheaper, and fails; then (1, 1)
+  adjustable.effort = [](AdjustableSurvey::Values v) { return v[0] == 0 ? 10 - 5 * v[1] : 11 + v[1]; };
   const SettingsChoice choice = choose_settings({.range = 0.1}, adjustable, {.reach = 2});
-  CHECK(choice.values == std::vector<double>{1, 1});
-  CHECK(choice.trials.size() == 3);
+  CHECK(choice.values == std::vector<double>{1, 0});
+  REQUIRE(choice.trials.size() == 2);  // not (0, 0), as (0, 1) failed
+  CHECK(choice.trials[0].values == std::vector<double>{0, 1});
 }
 
 TEST_CASE("a choice is the same on any number of threads") {

@@ -4,7 +4,6 @@
 #define PULSECAST_ACCURACY_HPP
 
 #include <functional>
-#include <set>
 
 #include <pulsecast/run_errors.hpp>
 
@@ -66,7 +65,7 @@ struct Accuracy {
 /// A setting that trades accuracy for speed, such as the number of subrays.
 struct SettingLadder {
   std::string name;            ///< for messages
-  std::vector<double> values;  ///< from the cheapest to the most exact
+  std::vector<double> values;  ///< from the least to the most exact
   double reference;            ///< value of the reference, more exact than all
 };
 
@@ -109,7 +108,16 @@ namespace detail {
 class SettingsSearch {
  public:
   SettingsSearch(const Accuracy& accuracy, const AdjustableSurvey& adjustable)
-      : accuracy_(accuracy), adjustable_(adjustable) {}
+      : accuracy_(accuracy), adjustable_(adjustable) {
+    Steps steps(adjustable.ladders.size(), 0);
+    for (std::size_t k = 0; k < steps.size();) {  // counts up, the first setting fastest
+      const std::vector<double> of = values(steps);
+      all_.emplace_back(
+          adjustable.effort ? adjustable.effort(of) : static_cast<double>(adjustable.survey(of).subrays()), steps);
+      for (k = 0; k < steps.size() && ++steps[k] == adjustable.ladders[k].values.size(); ++k) steps[k] = 0;
+    }
+    std::ranges::sort(all_);
+  }
 
   std::vector<SettingsTrial> trials{};  ///< on the last sample, by effort
   double uncertain = 0;                 ///< effort of the cheapest of them that may reach the accuracy, or may not
@@ -118,15 +126,7 @@ class SettingsSearch {
   [[nodiscard]] bool search(const ErrorSample& sample, const std::vector<Sample>& expected) {
     trials.clear();
     uncertain = 0;
-    std::set<std::pair<double, Steps>> next;
-    const auto add = [&](const Steps& steps) { next.emplace(effort(steps), steps); };
-    for (add(Steps(adjustable_.ladders.size(), 0)); !next.empty();) {
-      const auto [effort, steps] = *next.begin();
-      next.erase(next.begin());
-      for (std::size_t k = 0; k < steps.size(); ++k) {
-        Steps finer = steps;
-        if (++finer[k] < adjustable_.ladders[k].values.size()) add(finer);
-      }
+    for (const auto& [effort, steps] : all_) {
       if (fails(steps)) continue;
       SettingsTrial& trial = trials.emplace_back(SettingsTrial{values(steps), effort, {}});
       trial.errors = sample.errors("", expected, sample.simulate(adjustable_.survey(trial.values))).all;
@@ -146,12 +146,6 @@ class SettingsSearch {
     for (std::size_t k = 0; k < steps.size(); ++k) all.push_back(adjustable_.ladders[k].values[steps[k]]);
     return all;
   }
-  [[nodiscard]] double effort(const Steps& steps) {
-    double& known = efforts_[steps];
-    if (known > 0) return known;
-    const std::vector<double> of = values(steps);
-    return known = adjustable_.effort ? adjustable_.effort(of) : static_cast<double>(adjustable_.survey(of).subrays());
-  }
   [[nodiscard]] bool fails(const Steps& steps) const {
     return std::ranges::any_of(
         failed_, [&](const Steps& other) { return std::ranges::equal(steps, other, std::less_equal<>()); });
@@ -159,7 +153,7 @@ class SettingsSearch {
 
   const Accuracy& accuracy_;
   const AdjustableSurvey& adjustable_;
-  std::map<Steps, double> efforts_{};
+  std::vector<std::pair<double, Steps>> all_{};  // with their efforts, which sort them
   std::vector<Steps> failed_{};
 };
 

@@ -19,7 +19,9 @@ namespace PULSECAST_NAMESPACE::helios::detail {
           bin >= pulse_length / 64 && bin <= pulse_length / 4 && std::fabs(bin / own_bin - 1) > 1e-9)
         bins.push_back(bin);
   std::ranges::sort(bins, std::greater<>());
-  for (int order = 1; order <= *best.orders; ++order) orders.push_back(order);
+  for (const int order : {1, 2, 3, 4, 6, 8, 12, 16, 24, 32, 48})
+    if (order < *best.orders) orders.push_back(order);
+  orders.push_back(*best.orders);
   while (*best.orders > 1 && 4 * paths.back() < *best.paths) paths.push_back(2 * paths.back());
   return {
       .ladders = {{"beamSampleQuality", {1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 12, 14, 17}, static_cast<double>(*best.rings)},
