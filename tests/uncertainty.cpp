@@ -407,11 +407,11 @@ TEST_CASE("a surface is judged by all subrays: one plane, evenly bright") {
                  1, 0};
     }
   };
-  const auto judged_as = [](const Bowl& bowl) {
+  const auto judged_as = [](const Bowl& bowl, std::size_t subrays = 19, double waist = 0) {
+    const Laser laser{.divergence = 2e-3, .waist_diameter = waist};
     const Survey survey{
-        Platform{Tripod{}, Mount{},
-                 Deflector{FixedBeam{}, Scanner{.pulse_rate = 10, .pulses = 1, .laser = {.divergence = 2e-3}}}},
-        JudgedFootprint{LatticeFootprint{19}}, bowl, Receiver{}, AnalyticWaveform<>{}};
+        Platform{Tripod{}, Mount{}, Deflector{FixedBeam{}, Scanner{.pulse_rate = 10, .pulses = 1, .laser = laser}}},
+        JudgedFootprint{LatticeFootprint{subrays}}, bowl, Receiver{}, AnalyticWaveform<>{}};
     auto w = survey.workspace();
     return survey(0, w).shot.surface;
   };
@@ -422,6 +422,14 @@ TEST_CASE("a surface is judged by all subrays: one plane, evenly bright") {
   CHECK(judged_as({.step = 0.01_mm}) == MetSurface::smooth);
   CHECK(judged_as({.paint = 0.5}) == MetSurface::mixed);
   CHECK(judged_as({.paint = 0.98}) == MetSurface::smooth);
+  for (std::size_t subrays = 5; subrays < 24; ++subrays)  // of which four are judged at a time
+    for (const double waist : {0.0, 0.02}) {
+      CAPTURE(subrays);
+      CHECK(judged_as({}, subrays, waist) == MetSurface::smooth);
+      CHECK(judged_as({.step = 10_mm}, subrays, waist) == MetSurface::mixed);
+      CHECK(judged_as({.paint = 0.2}, subrays, waist) == MetSurface::mixed);
+    }
+  CHECK(judged_as({.step = 10_mm}, 3) == MetSurface::unjudged);  // three always lie on a plane
 }
 
 TEST_CASE("points say why they may err more than stated") {

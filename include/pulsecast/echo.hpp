@@ -96,7 +96,7 @@ struct RangeGate {
 
 /// What the subrays of a pulse met, as of a `JudgedFootprint`.
 enum class MetSurface : std::uint8_t {
-  unjudged,  ///< not judged, or a single ray
+  unjudged,  ///< not judged, or fewer than four rays
   smooth,    ///< all met one plane, to a fiftieth of the footprint's deviation, which is evenly bright
   mixed      ///< anything else
 };

@@ -61,10 +61,10 @@ class SurveyUncertainty {
             Covariance& part = error.scope == ErrorScope::pulse ? u.random : u.systematic;
             const Vec3 arm = error.about ? (shot.origin - *error.about) + beam : beam;
             if (error.moved != Vec3{} || error.turned != Vec3{}) part.add(error.moved + cross(error.turned, arm));
-            if (error.moved_any_way > 0) part.add(error.moved_any_way * error.moved_any_way);
-            if (const double square = error.turned_any_way * error.turned_any_way; square > 0) {
-              part.add(square * dot(arm, arm));
-              part.add(arm, -square);
+            if (error.turned_any_way > 0 || error.moved_any_way > 0) {
+              const double turned = error.turned_any_way * error.turned_any_way;
+              part.add(error.moved_any_way * error.moved_any_way + turned * dot(arm, arm));
+              part.add(arm, -turned);
             }
           });
     const RangeErrors& range = survey_->receivers()[of->emitter.receiver].receiver.range_errors;
@@ -73,7 +73,7 @@ class SurveyUncertainty {
     const TimingErrors::Error timing = of->timing->of(echo.amplitude, wide * std::sqrt(steep));
     const double noise = range.noise_of(echo), bias = timing.bias * timing.bias;
     u.random.add(shot.direction, noise * noise + timing.deviation * timing.deviation);
-    const bool biased = 25 * bias > u.random.along(shot.direction) + u.systematic.along(shot.direction);
+    const bool biased = 25 * bias > u.total().along(shot.direction);
     u.systematic.add(shot.direction, range.systematic_variance(echo, shot.channel) + bias);
     if (options_.footprint) {
       u.random.add(wide * wide);

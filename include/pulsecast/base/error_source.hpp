@@ -66,7 +66,7 @@ struct Covariance {
   double xy = 0, xz = 0, yz = 0;  ///< covariances
 
   /// Adds that of an error along a vector, whose length is a standard deviation [m], or its multiple.
-  void add(const Vec3& v, double factor = 1) noexcept {
+  [[gnu::always_inline]] void add(const Vec3& v, double factor = 1) noexcept {
     const Vec3 by = factor * v;
     xx += by.x * v.x;
     yy += by.y * v.y;
@@ -92,7 +92,7 @@ struct Covariance {
   }
   /// Variance along a unit vector [m^2].
   [[nodiscard]] double along(const Vec3& v) const noexcept {
-    return xx * v.x * v.x + yy * v.y * v.y + zz * v.z * v.z + 2 * (xy * v.x * v.y + xz * v.x * v.z + yz * v.y * v.z);
+    return v.x * (xx * v.x + 2 * (xy * v.y + xz * v.z)) + v.y * (yy * v.y + 2 * yz * v.z) + v.z * zz * v.z;
   }
   /// The same in axes that `turn(v)` maps a vector to.
   [[nodiscard]] Covariance in_axes(const auto& turn) const noexcept {

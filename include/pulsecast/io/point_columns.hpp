@@ -161,7 +161,7 @@ constexpr PointColumn covariance(std::string_view name) noexcept {
           systematic ? "of what neighbours share" : "of the place",
           PointNeed::uncertainty};
 }
-inline double uncertainty_flags_of(View p) noexcept { return p.uncertainty ? p.uncertainty->flags : 255; }
+inline std::uint64_t uncertainty_flags_of(View p) noexcept { return p.uncertainty ? p.uncertainty->flags : 255; }
 template <auto Index>
 double of_scene(View p) noexcept {
   return p.surface ? p.surface->interaction.*Index : std::numeric_limits<double>::infinity();
@@ -263,8 +263,9 @@ inline constexpr std::array point_columns = [] {
       covariance<&Covariance::xy, true>("systematic_covariance_xy"),
       covariance<&Covariance::xz, true>("systematic_covariance_xz"),
       covariance<&Covariance::yz, true>("systematic_covariance_yz"),
-      PointColumn{"uncertainty_flags", "", uint8, uncertainty_flags_of, "0: error as stated; or 255",
-                  PointNeed::uncertainty}};
+      PointColumn{"uncertainty_flags", "", uint8,
+                  [](View p) noexcept { return static_cast<double>(uncertainty_flags_of(p)); },
+                  "0: error as stated; or 255", PointNeed::uncertainty, uncertainty_flags_of}};
 }();
 
 /// Columns of points by default in Python, read from pulse and echo alone: those up to `kind`.

@@ -142,7 +142,7 @@ class PointEncoder {
 
   /// Value of the field of this index, times its scale; NaN if unknown.
   [[nodiscard]] double value(std::size_t field, const PointView& view) const noexcept {
-    return numbers_[field].of(view);
+    return numbers_[field].unscaled(view) * numbers_[field].scale;
   }
 
   /// Appends a record for each echo of the shots of a batch.
@@ -203,8 +203,8 @@ class PointEncoder {
     double scale;
     std::uint32_t offset;
 
-    [[nodiscard]] double of(const PointView& view) const noexcept {
-      return (get ? get(view) : view.attributes[attribute]) * scale;
+    [[nodiscard]] double unscaled(const PointView& view) const noexcept {
+      return get ? get(view) : view.attributes[attribute];
     }
   };
 
@@ -214,12 +214,12 @@ class PointEncoder {
     std::array<double, std::tuple_size_v<decltype(Points::views)>> values;
     if (number.loop) {
       number.loop(views, values.data());
-      for (std::size_t k = 0; k < views.size(); ++k) values[k] *= number.scale;
     } else {
-      for (std::size_t k = 0; k < views.size(); ++k) values[k] = number.of(views[k]);
+      for (std::size_t k = 0; k < views.size(); ++k) values[k] = number.unscaled(views[k]);
     }
-    for (std::size_t k = 0; k < views.size(); ++k)
-      detail::store_number<Stored>(values[k], record + k * size + number.offset);
+    record += number.offset;
+    for (std::size_t k = 0; k < views.size(); ++k, record += size)
+      detail::store_number<Stored>(values[k] * number.scale, record);
   }
   template <class Stored>
   static void store_wholes(const Number& number, std::span<const PointView> views, std::byte* record,
@@ -270,10 +270,12 @@ class PointEncoder {
   /// Uncertainty of a point, in its axes.
   [[nodiscard]] PointUncertainty uncertainty(const PointView& view, const Frame* frame) const {
     PointUncertainty u = settings_.uncertainty(view.shot, view.echo);
-    const auto turned = [&](const Vec3& v) { return in_axes(frame ? frame->direction(v) : v); };
-    if (frame || settings_.axes != PointAxes::right_forward_up)
-      for (Covariance* part : {&u.random, &u.systematic}) *part = part->in_axes(turned);
+    if (frame || settings_.axes != PointAxes::right_forward_up) turn(u, frame);
     return u;
+  }
+  [[gnu::noinline]] void turn(PointUncertainty& u, const Frame* frame) const noexcept {
+    const auto turned = [&](const Vec3& v) { return in_axes(frame ? frame->direction(v) : v); };
+    for (Covariance* part : {&u.random, &u.systematic}) *part = part->in_axes(turned);
   }
 
   template <class Use>

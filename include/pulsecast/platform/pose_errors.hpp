@@ -19,6 +19,7 @@ struct AxisDeviations {
   constexpr AxisDeviations(double x_, double y_, double z_) noexcept : x(x_), y(y_), z(z_) {}
 
   [[nodiscard]] constexpr bool none() const noexcept { return x == 0 && y == 0 && z == 0; }  ///< no error
+  [[nodiscard]] constexpr bool alike() const noexcept { return x == y && y == z; }           ///< the same for all axes
   friend bool operator==(const AxisDeviations&, const AxisDeviations&) = default;
 };
 
@@ -123,26 +124,17 @@ class WithPoseErrors {
   [[gnu::always_inline]] void visit_errors(PulseIndex i, Tick t, const Visit& visit) const noexcept {
     if constexpr (StatesErrors<Source>) truth_.visit_errors(i, t, visit);
     const Pose<frame::Body, frame::World> body = truth_.trajectory().at(t);
-    const Pose<frame::Instrument, frame::Body> mount = truth_.mount().pose();
-    const Pose<frame::Instrument, frame::World> instrument = body * mount;
-    const auto about_body = [&, axes = matrix_of(body.rotation)](
-                                const AxisDeviations& moved, const AxisDeviations& turned, ErrorScope scope) noexcept {
-      visit_axes(axes, body.position, moved, turned, scope, visit);
-    };
-    about_body(errors_.position_noise, errors_.attitude_noise, ErrorScope::pulse);
-    about_body(errors_.position_drift, errors_.attitude_drift, ErrorScope::correlated);
-    about_body(errors_.position_offset, errors_.attitude_offset, ErrorScope::leg);
-    about_body(errors_.lever_arm_deviation, 0, ErrorScope::survey);
-    if (!errors_.boresight_deviation.none())
-      visit_axes(matrix_of(instrument.rotation), instrument.position, 0, errors_.boresight_deviation,
-                 ErrorScope::survey, visit);
-    if (errors_.lever_arm_error != Vec3{})
-      visit(body * error_between(mount, {mount.rotation, mount.position + errors_.lever_arm_error}));
-    if (errors_.boresight_error != no_rotation)
-      visit(body * error_between(mount, {mount.rotation * errors_.boresight_error, mount.position}));
+    for (const PoseError<frame::Body>& of : stated_)
+      if (of.turned_any_way > 0 || of.moved_any_way > 0)
+        visit(Error{.about = *of.about == Vec3{} ? body.position : body.point(*of.about),
+                    .scope = of.scope,
+                    .moved_any_way = of.moved_any_way,
+                    .turned_any_way = of.turned_any_way});
+      else
+        visit(body * of);
     if (errors_.latency_deviation > 0)
       visit(error_between(body, truth_.trajectory().at(later(t, errors_.latency_deviation))));
-    visit_jitter(i, visit);
+    if (!errors_.angular_jitter.none()) visit_jitter(i, visit);
   }
 
  private:
@@ -157,25 +149,39 @@ class WithPoseErrors {
   }
   static Tick later(Tick t, double seconds) noexcept { return seconds == 0 ? t : t + Tick::of_seconds(seconds); }
 
-  /// Errors along axes of a frame in the world, and about those through a point. Inlined: most parts are constant
-  /// zeros.
-  [[gnu::always_inline]] static void visit_axes(const Matrix3& axes, const Vec3& origin, const AxisDeviations& moved,
-                                                const AxisDeviations& turned, ErrorScope scope,
-                                                const auto& visit) noexcept {
-    if (moved.x == moved.y && moved.y == moved.z) {
-      if (moved.x > 0) visit(Error{.scope = scope, .moved_any_way = moved.x});
-    } else {
-      visit(Error{.moved = moved.x * axes[0], .scope = scope});
-      visit(Error{.moved = moved.y * axes[1], .scope = scope});
-      visit(Error{.moved = moved.z * axes[2], .scope = scope});
-    }
-    if (turned.x == turned.y && turned.y == turned.z) {
-      if (turned.x > 0) visit(Error{.about = origin, .scope = scope, .turned_any_way = turned.x});
-    } else {
-      visit(Error{.turned = turned.x * axes[0], .about = origin, .scope = scope});
-      visit(Error{.turned = turned.y * axes[1], .about = origin, .scope = scope});
-      visit(Error{.turned = turned.z * axes[2], .about = origin, .scope = scope});
-    }
+  /// Errors in the frame of the body, but for those of latency and jitter.
+  [[nodiscard]] std::vector<PoseError<frame::Body>> in_body() const {
+    std::vector<PoseError<frame::Body>> all;
+    const auto along = [&]<class Frame>(const Pose<Frame, frame::Body>& of, const AxisDeviations& moved,
+                                        const AxisDeviations& turned, ErrorScope scope) {
+      const auto add = [&](PoseError<Frame> error) {
+        error.about = Vec3{};
+        error.scope = scope;
+        all.push_back(of * error);
+      };
+      if (moved.alike() && turned.alike()) {
+        if (moved.x > 0 || turned.x > 0) add({.moved_any_way = moved.x, .turned_any_way = turned.x});
+        return;
+      }
+      for (const auto& [move, turn, axis] : {std::tuple(moved.x, turned.x, axis::right),
+                                             {moved.y, turned.y, axis::forward},
+                                             {moved.z, turned.z, axis::up}}) {
+        if (move > 0) add({.moved = move * axis});
+        if (turn > 0) add({.turned = turn * axis});
+      }
+    };
+    const Pose<frame::Body, frame::Body> body{};
+    const Pose<frame::Instrument, frame::Body> mount = truth_.mount().pose();
+    along(body, errors_.position_noise, errors_.attitude_noise, ErrorScope::pulse);
+    along(body, errors_.position_drift, errors_.attitude_drift, ErrorScope::correlated);
+    along(body, errors_.position_offset, errors_.attitude_offset, ErrorScope::leg);
+    along(body, errors_.lever_arm_deviation, 0, ErrorScope::survey);
+    along(mount, 0, errors_.boresight_deviation, ErrorScope::survey);
+    if (errors_.lever_arm_error != Vec3{})
+      all.push_back(error_between(mount, {mount.rotation, mount.position + errors_.lever_arm_error}));
+    if (errors_.boresight_error != no_rotation)
+      all.push_back(error_between(mount, {mount.rotation * errors_.boresight_error, mount.position}));
+    return all;
   }
 
   void visit_jitter(PulseIndex i, const auto& visit) const noexcept {
@@ -260,6 +266,7 @@ class WithPoseErrors {
 
   Platform<Path, Source> truth_;
   PoseErrors errors_;
+  std::vector<PoseError<frame::Body>> stated_ = in_body();
   std::uint32_t leg_ = 0;
   Pose<frame::Instrument, frame::Instrument> calibration_{};  // reported from true mount
   double latency_ = 0;                                        // of the clock of poses [s]

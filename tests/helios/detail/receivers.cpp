@@ -195,6 +195,37 @@ TEST_CASE("receivers of the library's physics have its defaults, and noise that 
   CHECK(survey_receiver(channel).aerosols == AerosolModel::kruse);
 }
 
+TEST_CASE("noise of the library's physics deviates by a sixth of the minimum power, in samples") {
+  for (const double length : {1e-9, 4e-9, 20e-9})
+    for (const double share : {1.0, 0.1}) {  // bin by pulse length
+      ChannelSettings channel = ahead();
+      channel.pulse_length = length;
+      channel.waveform.bin_size = share * length;
+      channel.received_power_min = 1e-9;
+      auto unit = library_receiver_unit<NoWidth>(channel, survey_waveform(channel, 200e-9, true), true);
+      const Emitter emitter{.laser = survey_laser(channel, {})};
+      unit.detector.prepare(emitter.laser);
+      auto w = unit.detector.workspace(1);
+      double sum = 0, squares = 0;
+      constexpr int pulses = 2000;
+      const double range = 100, power = 100 * channel.received_power_min;
+      for (std::uint64_t k = 0; k < pulses; ++k) {
+        std::vector<Reflection> wall{{.range = range, .power = power}};
+        const Detection found = unit.detector.detect({emitter, {90, 110}, wall, {.seed = 3, .pulse = k}}, w);
+        const double at = (2 * range / speed_of_light - found.waveform_start) / (share * length);
+        const auto peak = static_cast<std::size_t>(std::lround(at));
+        REQUIRE(peak < found.waveform.size());
+        sum += found.waveform[peak];
+        squares += static_cast<double>(found.waveform[peak]) * found.waveform[peak];
+      }
+      const double mean = sum / pulses, deviation = std::sqrt(squares / pulses - mean * mean);
+      CAPTURE(length);
+      CAPTURE(share);
+      CHECK(mean > 0.5 * power);  // on the pulse
+      CHECK(deviation == relative(channel.received_power_min / 6, 4 / std::sqrt(2.0 * pulses)));
+    }
+}
+
 TEST_CASE("air beyond what its extinction was measured for is told of") {
   ChannelSettings channel = ahead();
   channel.wavelength = 1064e-9;

@@ -433,6 +433,14 @@ TEST_CASE("what does not part, single steps and dense footprints are left alone"
   CHECK(!spread({.range = 100, .tilt = 10_deg}, LatticeFootprint(19)));
   CHECK(!spread({.range = 100, .tilt = 0, .deeper = 3}, LatticeFootprint(19)));
   CHECK(pulse_on(Slope{.range = 100, .tilt = 0, .deeper = 3}, laser, LatticeFootprint(19), waveform()).echoes == 2);
+  for (const double deeper : {1.5, 3.0, 30.0}) {  // three subrays are on a plane, whatever they met
+    const Slope step{.range = 100, .tilt = 0, .deeper = deeper};
+    const Seen seen = pulse_on(step, laser, LatticeFootprint(3), waveform());
+    CHECK(!seen.outcome.spread);
+    CHECK(seen.echoes == 2);
+    CHECK(seen.strongest.range ==
+          pulse_on(step, laser, LatticeFootprint(3), waveform(), DirectLight{.spread_planes = false}).strongest.range);
+  }
   CHECK(!spread({.range = 3000, .tilt = 70_deg}, SingleRay{}));
   CHECK(spread({.range = 3000, .tilt = 60_deg}, LatticeFootprint(100)));
   CHECK(!spread({.range = 3000, .tilt = 60_deg}, LatticeFootprint(5000)));

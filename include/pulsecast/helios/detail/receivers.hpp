@@ -145,13 +145,16 @@ template <EchoWidth Width>
 using BandLimitedWaveform = FullWaveform<Width, BandLimitedReceiver<>>;
 
 /// The same by the library's physics: the footprint has the second moments of the beam, the
-/// receiver the bandwidth of the pulse. Noise is a sixth of the minimum power: false echoes are rare.
+/// receiver the bandwidth of the pulse. Noise deviates by a sixth of the minimum power: false echoes are rare.
 template <EchoWidth Width>
 [[nodiscard]] ReceiverUnit<RingFootprint, BandLimitedWaveform<Width>> library_receiver_unit(
     const ChannelSettings& channel, const WaveformSettings& waveform, bool noisy) {
   ReceiverChain chain;
-  if (noisy)
-    chain.noise_power = waveform.threshold / 6 / std::sqrt(chain.filter(channel.pulse_length).noise_bandwidth());
+  if (noisy) {  // samples are calibrated by what the low-pass leaves of a pulse's height
+    const LowPass filter = chain.filter(channel.pulse_length);
+    const ReceivedPulse pulse(GammaPulse{}, channel.pulse_length, filter, waveform.sample_interval);
+    chain.noise_power = waveform.threshold / 6 * pulse.gain() / std::sqrt(filter.noise_bandwidth());
+  }
   return {RingFootprint(static_cast<std::size_t>(std::max(1, channel.waveform.rings)), RingMoments::whole),
           survey_receiver(channel, true), BandLimitedWaveform<Width>(waveform, {}, BandLimitedReceiver<>(chain))};
 }

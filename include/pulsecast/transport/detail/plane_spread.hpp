@@ -49,6 +49,9 @@ class MetPlane {
     return range_of(subray_exit(scaled, emitter.laser), subray_direction(scaled, emitter.laser.divergence));
   }
 
+  /// Cosine of the incidence on the axis.
+  [[nodiscard]] double cos_incidence() const noexcept { return 1 / std::sqrt(1 + across_ * across_ + up_ * up_); }
+
   /// Direction in the footprint in which ranges grow, as a unit offset; across, if they do not.
   [[nodiscard]] Vec2 farther(const Emitter& emitter) const noexcept {
     constexpr double small = 1e-3;
@@ -102,6 +105,9 @@ struct Slope {
   if (met.size() != light.subrays) return {};
   const MetPlane plane(light.beam, met);
   if (!(plane.farthest_from(light.beam, met) < 0.1 * std::sqrt(3.0) * pulse_constant(light.emitter.laser))) return {};
+  if (met.size() == 3)  // which are always on a plane: it is the surface if they met it at its incidence
+    for (const Reflection& r : met)
+      if (!(std::fabs(r.cos_incidence - plane.cos_incidence()) < 2 * light.beam.spread)) return {};
   const Vec2 farther = plane.farther(light.emitter);
   const double begin = plane.range_at(-2.0 * farther, light.emitter);  // 4 deviations
   const double end = plane.range_at(2.0 * farther, light.emitter);
