@@ -155,9 +155,11 @@ void measure(const Place& place, std::size_t choices) {
     return AnySurvey(v[0] > subrays.back() ? best->survey : find(v).survey);
   };
   adjustable.effort = [](std::span<const double> v) { return v[0] + 10 + (v[1] == analytic ? 0 : 3 + 0.4e-9 / v[1]); };
-  const bool wood = place.name == "wood";  // where nine in ten subrays meet an edge
-  for (const Accuracy& asked : {Accuracy{.range = 5_mm, .echoes = wood ? 0.05 : 0.01},
-                                Accuracy{.range = 2_cm, .intensity = wood ? 0.3 : 0.05, .echoes = wood ? 0.1 : 0.02}}) {
+  // leaves make faint echoes at edges, of which every tenth needs more than a hundred subrays
+  const bool wood = place.name == "wood";
+  for (const Accuracy& asked : {wood ? Accuracy{.range = 1_cm, .echoes = 0.12} : Accuracy{.range = 5_mm},
+                                wood ? Accuracy{.range = 2_cm, .intensity = 0.8, .echoes = 0.2}
+                                     : Accuracy{.range = 2_cm, .intensity = 0.05, .echoes = 0.02}}) {
     const Candidate* cheapest = nullptr;
     for (const Candidate& c : all)
       if (asked.share_of_limits(c.truth).value <= 1 && (!cheapest || c.seconds < cheapest->seconds)) cheapest = &c;
