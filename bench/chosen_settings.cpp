@@ -78,6 +78,7 @@ Make surveys_of(std::shared_ptr<const Target> target, const stated::Lines& lines
 struct Place {
   std::string name;
   Make survey;
+  std::array<Accuracy, 2> asked{Accuracy{.range = 5_mm}, Accuracy{.range = 2_cm, .intensity = 0.05, .echoes = 0.02}};
 };
 
 stated::Lines lines_of(double spacing, bool from_above) {
@@ -99,8 +100,14 @@ std::vector<Place> places() {
       all.push_back({scene.name == "hills from above" ? "terrain" : scene.name,
                      surveys_of(stated::Surveyed(scene).map(), lines_of(1.1e-3, scene.from_above))});
   stated::Lines lines = lines_of(3e-3, false);
+  // edges of a street, and leaves, make faint echoes that a hundred subrays miss
+  for (Place& place : all)
+    if (place.name == "wood")
+      place.asked = {Accuracy{.range = 1_cm, .echoes = 0.12}, Accuracy{.range = 2_cm, .intensity = 0.8, .echoes = 0.2}};
   lines.from = street::on({2, -30}) + Vec3{0, 0, 2};
-  all.push_back({"street", surveys_of(std::make_shared<const street::Scene>(street::scene(1)), lines)});
+  all.push_back({"street",
+                 surveys_of(std::make_shared<const street::Scene>(street::scene(1)), lines),
+                 {Accuracy{.range = 5_mm, .echoes = 0.04}, Accuracy{.range = 2_cm, .intensity = 0.1, .echoes = 0.05}}});
   return all;
 }
 
@@ -155,11 +162,7 @@ void measure(const Place& place, std::size_t choices) {
     return AnySurvey(v[0] > subrays.back() ? best->survey : find(v).survey);
   };
   adjustable.effort = [](std::span<const double> v) { return v[0] + 10 + (v[1] == analytic ? 0 : 3 + 0.4e-9 / v[1]); };
-  // leaves make faint echoes at edges, of which every tenth needs more than a hundred subrays
-  const bool wood = place.name == "wood";
-  for (const Accuracy& asked : {wood ? Accuracy{.range = 1_cm, .echoes = 0.12} : Accuracy{.range = 5_mm},
-                                wood ? Accuracy{.range = 2_cm, .intensity = 0.8, .echoes = 0.2}
-                                     : Accuracy{.range = 2_cm, .intensity = 0.05, .echoes = 0.02}}) {
+  for (const Accuracy& asked : place.asked) {
     const Candidate* cheapest = nullptr;
     for (const Candidate& c : all)
       if (asked.share_of_limits(c.truth).value <= 1 && (!cheapest || c.seconds < cheapest->seconds)) cheapest = &c;
