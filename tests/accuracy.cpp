@@ -187,6 +187,9 @@ TEST_CASE("what cannot be asked or chosen from is refused") {
   without.survey = {};
   CHECK_THROWS_AS((void)choose_settings({}, without), SettingError);
   CHECK_THROWS_AS((void)choose_settings({}, adjustable, {.clusters = 1}), SettingError);
+  AdjustableSurvey many = adjustable;
+  many.ladders = std::vector(3, SettingLadder{"n", std::vector<double>(200, 1), 1000});  // 8 million settings
+  CHECK_THROWS_AS((void)choose_settings({}, many), SettingError);
 }
 
 }  // namespace

@@ -374,6 +374,8 @@ class CommandLine {
   [[nodiscard]] std::string problem_of_forecast() {
     for (const CLI::Option* option : of_forecast_)
       if (option->count() > 0 && o_.command != "forecast") return option->get_name() + " is for forecast only";
+    if (o_.accuracy && o_.command != "run" && o_.command != "forecast")
+      return "--accuracy is for a run or forecast only";
     if (o_.command != "forecast") return "";
     o_.forecast = {.time = quantity(time_, a_duration),
                    .memory = quantity(memory_, a_size),

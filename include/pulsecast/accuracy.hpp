@@ -48,8 +48,8 @@ struct Accuracy {
     }
   }
 
-  /// Greatest ratio of a figure to its limit, with the interval of the figure that has the greatest upper limit; up to
-  /// 1 the accuracy is reached, for certain if `high` is.
+  /// Greatest ratios of figures, of their lower and of their upper limits to what is asked: the accuracy is certainly
+  /// reached if `high` is at most 1, and certainly not if `low` is more.
   [[nodiscard]] Estimate share_of_limits(const EchoErrors& errors) const noexcept {
     Estimate most{};
     for (std::size_t f = 0; f < error_figure_count; ++f) {
@@ -78,9 +78,13 @@ struct AdjustableSurvey {
 
   void validate() const {
     require_within("AdjustableSurvey::ladders (number)", ladders.size(), 1, 16, "");
-    for (const SettingLadder& ladder : ladders)
+    double all = 1;
+    for (const SettingLadder& ladder : ladders) {
       require_within(text::joined({"SettingLadder::values (number) of '", ladder.name, "'"}), ladder.values.size(), 1,
                      1000, "");
+      all *= static_cast<double>(ladder.values.size());
+    }
+    require_within("AdjustableSurvey::ladders (settings)", all, 1, 1e6, "");
     if (!survey) throw SettingError("AdjustableSurvey::survey", 0, "", "a function");
   }
 };
