@@ -77,7 +77,7 @@ if(NOT number EQUAL 1)
   message(FATAL_ERROR "pages differ by the number of threads")
 endif()
 foreach(threads 1 2)
-  expect(0 "errors by a sample of 4096 pulse slots.*sampling +estimator +instrument +together.*class 2" ${SURVEY} --errors --seed 3 --threads ${threads}
+  expect(0 "errors by a sample of 6000 pulse slots.*sampling +estimator +instrument +together.*class 2" ${SURVEY} --errors --seed 3 --threads ${threads}
          --verbose --output errors${threads})
   file(GLOB_RECURSE report ${FOLDER}/errors${threads}/report.json)
   file(READ ${report} report${threads})
