@@ -141,7 +141,7 @@ def test_functions_have_the_parameters_that_pybind11_knows_of(name):
     assert all(value in ("...", defaults[one]) for one, value in said.items())
 
 
-RETURNED = {"int": "int", "float": "float", "bool": "bool", "str": "str", "dict": "dict", "None": "None", "object": ""}
+RETURNED = {"int": "int", "float": "float", "bool": "bool", "str": "str", "dict": "dict", "tuple": "tuple", "None": "None", "object": ""}
 
 
 @pytest.mark.parametrize("name", FUNCTIONS)
