@@ -15,12 +15,12 @@
 
 #include <doctest/doctest.h>
 
+#include <pulsecast/accuracy.hpp>
 #include <pulsecast/cloud.hpp>
 #include <pulsecast/helios/scene.hpp>
 #include <pulsecast/helios/survey.hpp>
 #include <pulsecast/material/weather.hpp>
 #include <pulsecast/run.hpp>
-#include <pulsecast/run_errors.hpp>
 
 #include "support/laws.hpp"
 #include "support/relative.hpp"
