@@ -230,6 +230,7 @@ class PointEncoder {
 
   /// Writes the records of up to as many points as `Points` holds.
   void store(std::span<const PointView> views, std::byte* records) const noexcept {
+    if (views.empty()) return;  // then there may be no records
     for (const Number& number : numbers_) number.store(number, views, records, layout_.size);
   }
 
