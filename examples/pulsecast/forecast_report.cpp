@@ -68,8 +68,7 @@ class SettingsChooser {
   }
 
   [[nodiscard]] std::string settings(const Forecast& f) const {
-    return "beamSampleQuality " + std::to_string(rings(f)) + " (" + std::to_string(f.subrays) +
-           (f.subrays == 1 ? " subray" : " subrays") + "), binSize_ns " + digits(bin_size(f) * 1e9);
+    return text_of(pulsecast::helios::ReceiverOverrides{rings(f), bin_size(f), f.overrides.orders, f.overrides.paths});
   }
 
   [[nodiscard]] std::string demands() const {

@@ -305,7 +305,9 @@ class Session {
       std::optional<ErrorReport> errors;
       if ((options_.errors || chosen_) && ranks_.first()) errors.emplace(*simulation, options_, log_.seed);
       const RunSummary played = play(*simulation, folder, std::exchange(again, std::nullopt).has_value());
-      if (errors && played.complete) errors->finish(folder, {file_.text, log_.how, log_.inputs, log_.seed, r, chosen_ ? text_of(*chosen_) : ""}, played);
+      if (errors && played.complete)
+        errors->finish(folder, {file_.text, log_.how, log_.inputs, log_.seed, r, chosen_ ? text_of(*chosen_) : ""},
+                       played);
       all.add(played);
       const fs::path done = folder;
       if (!all.complete) break;
