@@ -102,6 +102,7 @@ TEST_CASE("numbers of a survey are those of the survey inside, and single slots,
   for (PulseIndex i = 0; i < survey.size(); i += 13) {
     CAPTURE(i);
     CHECK(any.next_pulse(i) == survey.next_pulse(i));
+    CHECK(any.slot_from(Tick::of(i, 1000)) == survey.slot_from(Tick::of(i, 1000)));
     const Outcome outcome = any(i, workspace), expected = survey(i, own);
     CHECK(outcome.shot.fate == expected.shot.fate);
     REQUIRE(outcome.echoes.size() == expected.echoes.size());
@@ -112,6 +113,7 @@ TEST_CASE("numbers of a survey are those of the survey inside, and single slots,
 TEST_CASE("a survey with what a run needs and no more will do") {
   const AnySurvey any = LeastSurvey{};
   CHECK(any.next_pulse(3) == 3);
+  CHECK(any.slot_from(Tick::of(3, 1)) == 0);
   const RunSummary summary = run(any, {.threads = 2}), expected = run(LeastSurvey{}, {.threads = 2});
   CHECK(summary.slots == 100);
   CHECK(summary.count(Fate::blocked) == 34);

@@ -106,6 +106,12 @@ struct Skips : LeastSource<frame::Beam> {
   explicit Skips(int slots) : by(static_cast<PulseIndex>(slots)) {}
   PulseIndex next_pulse(PulseIndex i) const noexcept { return i + by; }
 };
+struct FindsLate : LeastSource<frame::Beam> {
+  PulseIndex slot_from(Tick t) const noexcept { return static_cast<PulseIndex>(std::max(0.0, t.seconds())) + 2; }
+};
+struct FindsTooMany : LeastSource<frame::Beam> {
+  PulseIndex slot_from(Tick) const noexcept { return size() + 1; }
+};
 struct MixesLanes : LeastOptic {
   simd::Mask poses(const TickLanes& t, PoseLanes<frame::Beam, frame::Instrument>& beams) const noexcept {
     beams.position.x = simd::Doubles{} + 1e-9 * t.fraction[1];
@@ -435,6 +441,8 @@ TEST_CASE("sources that keep the law pass, and those that break it do not") {
   CHECK(names(source_laws(Hurried{}), "duration"));
   CHECK(names(source_laws(MakesOthers{}), "differs in lanes"));
   CHECK(names(source_laws(MakesNone{}), "0 are made"));
+  CHECK(names(source_laws(FindsLate{}), "for the time of an earlier one"));
+  CHECK(names(source_laws(FindsTooMany{}), "is found of 10"));
   CHECK(names(source_laws(Skips{+2}), "is skipped"));
   CHECK(names(source_laws(Skips{-1}), "the next pulse after 0 is"));
 }

@@ -23,13 +23,14 @@ class AnySurvey {
     [[nodiscard]] virtual std::size_t subrays() const noexcept = 0;
     [[nodiscard]] virtual std::size_t recorded_subrays() const noexcept = 0;
     [[nodiscard]] virtual double sample_interval() const noexcept = 0;
+    [[nodiscard]] virtual PulseIndex slot_from(Tick t) const noexcept = 0;
     [[nodiscard]] virtual PulseIndex next_pulse(PulseIndex i) const noexcept = 0;
     [[nodiscard]] virtual Outcome outcome(PulseIndex i, Scratch& w) const noexcept = 0;
     virtual void simulate(PulseIndex i, PulseIndex end, Scratch& w, Next call, const void* next) const = 0;
   };
 
  public:
-  using refinements = refines<tag::SkipsBlocked, tag::SimulatesInOrder, tag::IdentifiedSurvey>;
+  using refinements = refines<tag::FindsSlots, tag::SkipsBlocked, tag::SimulatesInOrder, tag::IdentifiedSurvey>;
   /// Scratch memory of one worker.
   using Workspace = std::unique_ptr<Scratch>;
 
@@ -45,6 +46,8 @@ class AnySurvey {
   [[nodiscard]] std::size_t subrays() const noexcept { return survey_->subrays(); }
   [[nodiscard]] std::size_t recorded_subrays() const noexcept { return survey_->recorded_subrays(); }
   [[nodiscard]] double sample_interval() const noexcept { return survey_->sample_interval(); }
+  /// As the concept FindsSlots describes; 0 for a survey that does not.
+  [[nodiscard]] PulseIndex slot_from(Tick t) const noexcept { return survey_->slot_from(t); }
   /// As the concept SkipsBlocked describes; `i` itself for a survey that does not.
   [[nodiscard]] PulseIndex next_pulse(PulseIndex i) const noexcept { return survey_->next_pulse(i); }
   /// As the concept IdentifiedSurvey requires.
@@ -73,6 +76,10 @@ class AnySurvey {
     [[nodiscard]] std::size_t subrays() const noexcept override { return survey.subrays(); }
     [[nodiscard]] std::size_t recorded_subrays() const noexcept override { return survey.recorded_subrays(); }
     [[nodiscard]] double sample_interval() const noexcept override { return survey.sample_interval(); }
+    [[nodiscard]] PulseIndex slot_from(Tick t) const noexcept override {
+      if constexpr (FindsSlots<Survey>) return survey.slot_from(t);
+      return 0;
+    }
     [[nodiscard]] PulseIndex next_pulse(PulseIndex i) const noexcept override {
       if constexpr (SkipsBlocked<Survey>) return survey.next_pulse(i);
       return i;

@@ -51,6 +51,8 @@ class Survey : public EchoSimulator<Footprint, Target, Detector, Transport> {
   [[nodiscard]] PulseIndex size() const noexcept { return source_.size(); }
   /// Source of the pulses.
   [[nodiscard]] const Source& source() const noexcept { return source_; }
+  /// As the concept FindsSlots requires: a loop simulates the slots from one time up to another.
+  [[nodiscard]] PulseIndex slot_from(Tick t) const noexcept requires FindsSlots<Source> { return source_.slot_from(t); }
   /// As the concept SkipsBlocked requires.
   [[nodiscard]] PulseIndex next_pulse(PulseIndex i) const noexcept requires SkipsBlocked<Source> {
     return source_.next_pulse(i);

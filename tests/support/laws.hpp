@@ -241,6 +241,19 @@ template <class S>
       }
   if constexpr (StridesLanes<S>)
     if (const std::string broken = stride_laws(source, slots, emitters.size()); !broken.empty()) return broken;
+  if constexpr (FindsSlots<S>)
+    for (const PulseIndex i : slots)
+      if (const auto pulse = source.pulse(i))
+        for (const double later : {-1.0, -1e-9, 0.0, 1e-9, 1.0}) {
+          const Tick t = pulse->tick + Tick::of_seconds(later);
+          const PulseIndex from = source.slot_from(t);
+          if (from > size) return detail::sentence("slot ", from, " is found of ", size);
+          for (PulseIndex k = 1; k <= std::min<PulseIndex>(64, from); ++k)
+            if (const auto before = source.pulse(from - k); before && !(before->tick < t))
+              return detail::sentence("slot ", from, " is found for the time of an earlier one, ", from - k);
+          if (from + 4096 < i && !(t < pulse->tick))
+            return detail::sentence("slot ", from, " is found for the time of slot ", i, ", far too early");
+        }
   if constexpr (SkipsBlocked<S>)
     for (const PulseIndex i : slots) {
       const PulseIndex next = source.next_pulse(i);

@@ -37,6 +37,7 @@ class Instrument {
   [[nodiscard]] PulseLanes<frame::Instrument> pulse_lanes(PulseIndex i, std::size_t count) const noexcept {
     return channels_.pulse_lanes(i, count);
   }
+  [[nodiscard]] PulseIndex slot_from(Tick t) const noexcept { return channels_.slot_from(t); }
   [[nodiscard]] PulseIndex next_pulse(PulseIndex i) const noexcept { return channels_.next_pulse(i); }
 
   /// Beam of pulse i, fired at t, without errors of deflection and head, shifted by that of range; or empty.

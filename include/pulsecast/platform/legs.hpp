@@ -67,6 +67,17 @@ class Legs {
     return p;
   }
 
+  /// First slot of the first leg, in their order, that has one at a time or after it.
+  [[nodiscard]] PulseIndex slot_from(Tick t) const noexcept requires FindsSlots<P> {
+    for (std::size_t k = 0; k < legs_.size(); ++k) {
+      const PulseIndex first = starts_[k].pulse, end = k + 1 < starts_.size() ? starts_[k + 1].pulse : size();
+      if (first == end) continue;
+      const Tick of_leg = t - starts_[k].tick - Tick::of_seconds(4e-16);  // as both round
+      if (const PulseIndex slot = first + legs_[k].slot_from(of_leg); slot < end) return slot;
+    }
+    return size();
+  }
+
   [[nodiscard]] PulseIndex next_pulse(PulseIndex i) const noexcept requires SkipsBlocked<P> {
     const std::size_t k = leg_of(i);
     return starts_[k].pulse + legs_[k].next_pulse(i - starts_[k].pulse);

@@ -52,6 +52,7 @@ class Platform {
     return out;
   }
 
+  [[nodiscard]] PulseIndex slot_from(Tick t) const noexcept requires FindsSlots<Source> { return source_.slot_from(t); }
   [[nodiscard]] PulseIndex next_pulse(PulseIndex i) const noexcept requires SkipsBlocked<Source> {
     return source_.next_pulse(i);
   }

@@ -90,6 +90,7 @@ class WithPoseErrors {
   [[nodiscard]] std::vector<Emitter> emitters() const { return truth_.emitters(); }
   [[nodiscard]] const Platform<Path, Source>& truth() const noexcept { return truth_; }  ///< without errors
 
+  [[nodiscard]] PulseIndex slot_from(Tick t) const noexcept requires FindsSlots<Source> { return truth_.slot_from(t); }
   [[nodiscard]] PulseIndex next_pulse(PulseIndex i) const noexcept requires SkipsBlocked<Source> {
     return truth_.next_pulse(i);
   }

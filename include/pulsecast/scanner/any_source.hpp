@@ -36,6 +36,10 @@ class AnySource {
   [[nodiscard]] auto pulse_lanes(PulseIndex i, std::size_t count) const noexcept {
     return std::visit([=](const auto& s) noexcept { return find_pulses(s, i, count); }, source_);
   }
+  [[nodiscard]] PulseIndex slot_from(Tick t) const noexcept requires FindsSlots<First> &&
+      (FindsSlots<Others> && ...) {
+    return std::visit([t](const auto& s) noexcept { return s.slot_from(t); }, source_);
+  }
   [[nodiscard]] PulseIndex next_pulse(PulseIndex i) const noexcept requires SkipsBlocked<First> ||
       (SkipsBlocked<Others> || ...) {
     const auto skip = [i]<class Source>(const Source& s) noexcept -> PulseIndex {

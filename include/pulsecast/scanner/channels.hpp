@@ -67,6 +67,13 @@ class Channels {
     return all;
   }
 
+  [[nodiscard]] PulseIndex slot_from(Tick t) const noexcept requires FindsSlots<Source> {
+    const PulseIndex n = channels_.size();
+    PulseIndex first = size();  // of the first slots of all channels
+    for (PulseIndex k = 0; k < n; ++k) first = std::min(first, channels_[k].slot_from(t) * n + k);
+    return first;
+  }
+
   [[nodiscard]] PulseIndex next_pulse(PulseIndex i) const noexcept requires SkipsBlocked<Source> {
     const PulseIndex n = channels_.size(), most = size();
     PulseIndex next = most;  // first of the next slots of all channels

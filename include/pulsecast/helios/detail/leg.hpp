@@ -182,6 +182,7 @@ class SurveyLeg {
     return out;
   }
 
+  [[nodiscard]] PulseIndex slot_from(Tick t) const noexcept { return truth_.slot_from(t); }
   [[nodiscard]] PulseIndex next_pulse(PulseIndex i) const noexcept { return truth_.next_pulse(i); }
 
   template <class Visit>
