@@ -52,6 +52,7 @@ includes_of_higher_layers() {
     may["run_errors"] = may["detail"] " detail"
     may["forecast"] = may["accuracy"] = may["run_errors"] " run_errors"
     may["run"] = may["uncertainty"] = may["survey"] " survey result_buffer detail"
+    may["sensor_kit"] = may["run"] " run any_survey"
     may["pulsecast"] = may["run"] " run any_survey sample run_errors forecast accuracy uncertainty version"
     may["io"] = may["pulsecast"] " sensor"
     may["helios"] = may["mpi"] = may["page"] = may["python"] = may["io"] " io"

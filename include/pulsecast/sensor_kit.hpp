@@ -1,0 +1,172 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#ifndef PULSECAST_SENSOR_KIT_HPP
+#define PULSECAST_SENSOR_KIT_HPP
+
+#include <pulsecast/any_survey.hpp>
+#include <pulsecast/run.hpp>
+#include <pulsecast/scanner/scanner.hpp>
+
+namespace PULSECAST_NAMESPACE {
+
+/// Sink that begins anew with each scan, as `io::PointBuffer`.
+template <class S>
+concept ScanSink = EchoSink<S> && requires(S& sink, Tick start) {
+  sink.begin_scan(start);
+};
+
+/// Sensors of a robot, which a loop steps from one time to the next. Scan n of a sensor is that of the times from
+/// n / rate up to (n + 1) / rate, sample n is due at n / rate, in time since the start of the survey. All calls of the
+/// user's functions come on the caller's thread, by the time at which they are due, then in the order of adding. They
+/// and their data depend on the poses and the map during a step alone: not on threads, executor or other sensors, nor
+/// on the length of the steps where poses are functions of time. No pose outlives a step.
+class SensorKit {
+ public:
+  explicit SensorKit(Tick start = {}) : time_(start) {}  ///< time from which the first step goes on
+
+  /// Adds a sensor that scans from the kit's time on, beginning with its next whole scan, up to the end of its survey:
+  /// `kit.add_scans("lidar", survey, 10, io::PointBuffer(layout, settings), [&](const io::PointBuffer& scan) {})`.
+  /// `scan_rate` is from 1e-3 to 1e6 [Hz]. The sink is told the start of a scan in the step of this, then gets the
+  /// pulses; side by side with other sinks, but never on two threads at once. `take` is called when the scan is due,
+  /// at its end. @throws SettingError for a rate out of range, a name that the kit has, or a survey that finds no slots
+  template <ScanSink Sink, class Take>
+  requires std::invocable<Take&, const Sink&>
+  void add_scans(std::string name, AnySurvey survey, double scan_rate, Sink sink, Take take) {
+    check(name, scan_rate);
+    if (survey.size() > 0 && survey.slot_from({std::int64_t{1} << 40, 0}) == 0)
+      throw SettingError(label(name), " has a survey that finds no slots: expected a source with slot_from(tick)");
+    sensors_.push_back(std::make_unique<Scans<Sink, Take>>(std::move(name), scan_rate, time_, std::move(survey),
+                                                           std::move(sink), std::move(take)));
+    ++scanning_;
+  }
+
+  /// Adds what is sampled at a rate, from 1e-3 to 1e6 [Hz], from the kit's time on: poses, inertial samples, clocks.
+  /// `sample(i, tick)` is called when sample i is due, at Tick::of(i, rate): also for one due at the end of a step, so
+  /// that it sees the poses of that. @throws SettingError
+  template <class Sample>
+  requires std::invocable<Sample&, PulseIndex, Tick>
+  void add_samples(std::string name, double rate, Sample sample) {
+    check(name, rate);
+    sensors_.push_back(std::make_unique<Samples<Sample>>(std::move(name), rate, time_, std::move(sample)));
+  }
+
+  /// Simulates all sensors up to a time, on the threads of `workers`: slots before it, samples and ends of scans until
+  /// and at it. With a `ThreadPool`, steps soon allocate nothing. @throws SettingError for an earlier time than the
+  /// kit's @throws std::runtime_error as `run`; the kit is then of no use
+  void step(Tick until, const Workers& workers = {}) {
+    if (until < time_)
+      throw_setting_error("SensorKit::step (until)", until.seconds(), "s",
+                          text::joined({"at least ", text::to_text(time_.seconds()), ", the time of the last step"}));
+    do {
+      Tick end = until;  // a sink holds one scan, which is passed on before the next begins
+      for (const auto& sensor : sensors_)
+        if (sensor->scans) end = std::min(end, sensor->due());
+      simulate(end, workers);
+      time_ = end;
+      while (Sensor* const next = next_due()) next->deliver();
+    } while (time_ < until);
+  }
+
+  [[nodiscard]] Tick time() const noexcept { return time_; }  ///< up to which it was stepped
+
+ private:
+  struct Sensor {
+    std::string name;
+    double rate;
+    PulseIndex number;  ///< of the next scan or sample: the first that begins at the kit's time or after
+    bool scans;
+
+    Sensor(std::string of_name, double of_rate, Tick from, bool of_scans)
+        : name(std::move(of_name)),
+          rate(of_rate),
+          number(Scanner{.pulse_rate = rate, .pulses = PulseIndex{1} << 52}.slot_from(from)),
+          scans(of_scans) {}
+    virtual ~Sensor() = default;
+    [[nodiscard]] virtual Tick due() const noexcept { return Tick::of(number, rate); }
+    virtual void simulate(Tick, const RunOptions&) {}
+    virtual void deliver() = 0;
+  };
+
+  template <class Sink, class Take>
+  struct Scans final : Sensor {
+    AnySurvey survey;
+    Sink sink;
+    Take take;
+    PulseIndex slot;     ///< the next one
+    bool begun = false;  ///< true if the sink has the start of the scan
+
+    Scans(std::string of_name, double of_rate, Tick from, AnySurvey of_survey, Sink to_sink, Take to_take)
+        : Sensor(std::move(of_name), of_rate, from, true),
+          survey(std::move(of_survey)),
+          sink(std::move(to_sink)),
+          take(std::move(to_take)),
+          slot(survey.slot_from(Tick::of(this->number, this->rate))) {}
+
+    [[nodiscard]] Tick due() const noexcept override {
+      if (!begun && slot == survey.size()) return {std::numeric_limits<std::int64_t>::max(), 0};
+      return Tick::of(this->number + 1, this->rate);
+    }
+    void simulate(Tick end, const RunOptions& options) override {
+      const Tick start = Tick::of(this->number, this->rate);
+      if (!(start < end) || (!begun && slot == survey.size())) return;
+      if (!std::exchange(begun, true)) sink.begin_scan(start);
+      RunOptions part = options;
+      part.first = slot;
+      part.end = slot = std::max(slot, survey.slot_from(end));
+      if (part.first < part.end) run(survey, part, sink);
+    }
+    void deliver() override {
+      begun = false;
+      ++this->number;
+      take(std::as_const(sink));
+    }
+  };
+
+  template <class Sample>
+  struct Samples final : Sensor {
+    Sample sample;
+
+    Samples(std::string of_name, double of_rate, Tick from, Sample of_sample)
+        : Sensor(std::move(of_name), of_rate, from, false), sample(std::move(of_sample)) {}
+    void deliver() override {
+      const PulseIndex i = this->number++;
+      sample(i, Tick::of(i, this->rate));
+    }
+  };
+
+  static std::string label(const std::string& name) { return text::joined({"sensor '", name, "'"}); }
+
+  void check(const std::string& name, double rate) const {
+    naming(label(name), [&] { require_within("rate", rate, 1e-3, 1e6, "Hz"); });
+    for (const auto& sensor : sensors_)
+      if (sensor->name == name) throw SettingError(label(name), " has the name of another: expected one of its own");
+  }
+
+  /// One sensor a thread if there are many, or else one after another on all threads.
+  void simulate(Tick end, const Workers& workers) {
+    const unsigned threads = workers.count();
+    if (scanning_ >= 2 * threads) {
+      for_each_index(sensors_.size(), workers, [&](std::size_t k) {
+        sensors_[k]->simulate(end, {.threads = 1, .executor = workers.executor()});
+      });
+    } else {
+      for (const auto& sensor : sensors_) sensor->simulate(end, {.threads = threads, .executor = workers.executor()});
+    }
+  }
+
+  /// First sensor of those that are due the earliest, by the kit's time; null if none is due.
+  [[nodiscard]] Sensor* next_due() const noexcept {
+    Sensor* first = nullptr;
+    for (const auto& sensor : sensors_)
+      if (sensor->due() <= time_ && (!first || sensor->due() < first->due())) first = sensor.get();
+    return first;
+  }
+
+  Tick time_;
+  std::vector<std::unique_ptr<Sensor>> sensors_;  // in the order of adding
+  std::size_t scanning_ = 0;                      // number of those that scan
+};
+
+}  // namespace PULSECAST_NAMESPACE
+
+#endif
