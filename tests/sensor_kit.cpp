@@ -242,7 +242,7 @@ TEST_CASE("points of a scan over several steps are in the sensor's frame of each
 }
 
 TEST_CASE("a kit with a pool allocates nothing after its first second") {
-  for (const unsigned threads : {1U, 2U}) {  // one sensor a thread, and one after another on all
+  for (const unsigned threads : {1U, 2U}) {
     ThreadPool pool(threads);
     JumpingRobot robot;
     SensorKit kit;

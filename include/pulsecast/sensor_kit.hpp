@@ -27,8 +27,8 @@ class SensorKit {
   /// Adds a sensor that scans from the kit's time on, beginning with its next whole scan, up to the end of its survey:
   /// `kit.add_scans("lidar", survey, 10, io::PointBuffer(layout, settings), [&](const io::PointBuffer& scan) {})`.
   /// `scan_rate` is from 1e-3 to 1e6 [Hz]. The sink is told the start of a scan in the step of this, then gets the
-  /// pulses; side by side with other sinks, but never on two threads at once. `take` is called when the scan is due,
-  /// at its end. @throws SettingError for a rate out of range, a name that the kit has, or a survey that finds no slots
+  /// pulses of this and of later steps, as of a run. `take` is called when the scan is due, at its end. @throws
+  /// SettingError for a rate out of range, a name that the kit has, or a survey that finds no slots
   template <ScanSink Sink, class Take>
   requires std::invocable<Take&, const Sink&>
   void add_scans(std::string name, AnySurvey survey, double scan_rate, Sink sink, Take take) {
@@ -37,7 +37,6 @@ class SensorKit {
       throw SettingError(label(name), " has a survey that finds no slots: expected a source with slot_from(tick)");
     sensors_.push_back(std::make_unique<Scans<Sink, Take>>(std::move(name), scan_rate, time_, std::move(survey),
                                                            std::move(sink), std::move(take)));
-    ++scanning_;
   }
 
   /// Adds what is sampled at a rate, from 1e-3 to 1e6 [Hz], from the kit's time on: poses, inertial samples, clocks.
@@ -50,8 +49,9 @@ class SensorKit {
     sensors_.push_back(std::make_unique<Samples<Sample>>(std::move(name), rate, time_, std::move(sample)));
   }
 
-  /// Simulates all sensors up to a time, on the threads of `workers`: slots before it, samples and ends of scans until
-  /// and at it. With a `ThreadPool`, steps soon allocate nothing. @throws SettingError for an earlier time than the
+  /// Simulates all sensors up to a time: slots before it, samples and ends of scans until and at it. Sensors follow one
+  /// another, each on the threads of `workers`: several kits run side by side, `{pool, 1}` each. With a `ThreadPool`,
+  /// steps soon allocate nothing. @throws SettingError for an earlier time than the
   /// kit's @throws std::runtime_error as `run`; the kit is then of no use
   void step(Tick until, const Workers& workers = {}) {
     if (until < time_)
@@ -61,7 +61,8 @@ class SensorKit {
       Tick end = until;  // a sink holds one scan, which is passed on before the next begins
       for (const auto& sensor : sensors_)
         if (sensor->scans) end = std::min(end, sensor->due());
-      simulate(end, workers);
+      for (const auto& sensor : sensors_)
+        sensor->simulate(end, {.threads = workers.count(), .executor = workers.executor()});
       time_ = end;
       while (Sensor* const next = next_due()) next->deliver();
     } while (time_ < until);
@@ -142,18 +143,6 @@ class SensorKit {
       if (sensor->name == name) throw SettingError(label(name), " has the name of another: expected one of its own");
   }
 
-  /// One sensor a thread if there are many, or else one after another on all threads.
-  void simulate(Tick end, const Workers& workers) {
-    const unsigned threads = workers.count();
-    if (scanning_ >= 2 * threads) {
-      for_each_index(sensors_.size(), workers, [&](std::size_t k) {
-        sensors_[k]->simulate(end, {.threads = 1, .executor = workers.executor()});
-      });
-    } else {
-      for (const auto& sensor : sensors_) sensor->simulate(end, {.threads = threads, .executor = workers.executor()});
-    }
-  }
-
   /// First sensor of those that are due the earliest, by the kit's time; null if none is due.
   [[nodiscard]] Sensor* next_due() const noexcept {
     Sensor* first = nullptr;
@@ -164,7 +153,6 @@ class SensorKit {
 
   Tick time_;
   std::vector<std::unique_ptr<Sensor>> sensors_;  // in the order of adding
-  std::size_t scanning_ = 0;                      // number of those that scan
 };
 
 }  // namespace PULSECAST_NAMESPACE
