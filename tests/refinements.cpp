@@ -59,6 +59,8 @@ MISSPELT(Gated, throwing, bool open(Tick) const);
 MISSPELT(ForeseesOpening, seconds, double next_open(Tick) const noexcept);
 MISSPELT(MovesInLanes, tick, Pose<frame::Beam, frame::Instrument> at(Tick) const noexcept;
          simd::Mask poses(Tick, PoseLanes<frame::Beam, frame::Instrument>&) const noexcept);
+MISSPELT(Differentiable, throwing, Derivatives derivatives(Tick) const);
+MISSPELT(Differentiable, velocity, Vec3 derivatives(Tick) const noexcept);
 MISSPELT(MakesLanes, throwing, std::optional<Pulse<frame::Beam>> pulse(PulseIndex) const noexcept;
          PulseLanes<frame::Beam> pulse_lanes(PulseIndex, std::size_t) const);
 MISSPELT(FindsSlots, throwing, PulseIndex slot_from(Tick) const);

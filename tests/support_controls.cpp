@@ -134,6 +134,20 @@ struct MakesOthers : LeastSource<frame::Beam> {
 struct MakesNone : LeastSource<frame::Beam> {
   PulseLanes<frame::Beam> pulse_lanes(PulseIndex, std::size_t) const noexcept { return {}; }
 };
+/// Motion along a parabola, turning, with derivatives that may be wrong.
+struct Differentiated {
+  double velocity = 1, acceleration = 1, turn = 1;
+  BeamPose at(Tick t) const noexcept {
+    const double s = t.seconds();
+    return {rotation_about(axis::up, 0.2 * s), {s * s, 0, 0}};
+  }
+  Derivatives derivatives(Tick t) const noexcept {
+    return {{2 * t.seconds() * velocity, 0, 0}, {2 * acceleration, 0, 0}, {0, 0, 0.2 * turn}, {}};
+  }
+};
+struct Jerky : Differentiated {  // jumps all the time
+  BeamPose at(Tick t) const noexcept { return {no_rotation, {t.phase(7919), 0, 0}}; }
+};
 struct NotUnit {
   BeamPose at(Tick t) const noexcept { return {Rotation{1 + 1e-9 * t.seconds(), 0, 0, 0}, {}}; }
 };
@@ -420,6 +434,15 @@ TEST_CASE("motions that keep the law pass, and those that break it do not") {
   CHECK(names(motion_laws(ClosesLanes{}, ticks), "the gate in lane 1 differs"));
   CHECK(names(motion_laws(NotUnit{}, ticks), "not rigid"));
   CHECK(names(motion_laws(NotFinite{}, ticks), "not rigid"));
+}
+
+TEST_CASE("derivatives that keep the law pass, and those that break it do not") {
+  const std::vector<Tick> few{{0, 0.5}, {1, 0}, {3, 0.25}};
+  CHECK(derivative_laws(Differentiated{}, few) == "");
+  CHECK(names(derivative_laws(Differentiated{.velocity = 1.001}, few), "the velocity differs"));
+  CHECK(names(derivative_laws(Differentiated{.acceleration = 1.001}, few), "the acceleration differs"));
+  CHECK(names(derivative_laws(Differentiated{.turn = 1.001}, few), "the angular rate differs"));
+  CHECK(names(derivative_laws(Jerky{}, few), "smooth at"));
 }
 
 TEST_CASE("sources that keep the law pass, and those that break it do not") {

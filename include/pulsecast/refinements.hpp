@@ -78,6 +78,14 @@ concept MovesInLanes = requires(const M m, const TickLanes& ticks, detail::Poses
 PULSECAST_OPTIONAL_MEMBER(MovesInLanes, "simd::Mask poses(const TickLanes&, PoseLanes<From, To>&) const noexcept", poses,
                           (TickLanes{}, std::declval<detail::PosesOf<T>&>()))
 
+/// Motion that knows its derivatives, as `Waypoints`, for an `Imu`. Others are differentiated by `derivatives_of`.
+/// Law: the derivatives of `at` at that tick, from the right where they jump; zero where the pose rests.
+template <class M>
+concept Differentiable = requires(const M m, Tick t) {
+  { m.derivatives(t) } noexcept -> std::same_as<Derivatives>;
+};
+PULSECAST_OPTIONAL_MEMBER(Differentiable, "Derivatives derivatives(Tick) const noexcept", derivatives, (Tick{}))
+
 /// Source that makes the pulses of a register at once, as `Scanner`: from 1 to `count` slots from i on, where `count`
 /// is at least 1 and at most `simd::lane_count`, and the slots are below `size()`.
 /// Law: slot i + k is `pulse(i + k)`, bit for bit.

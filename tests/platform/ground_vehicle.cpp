@@ -396,6 +396,15 @@ TEST_CASE("a drive keeps the laws of a motion, and what it was told about the gr
   CHECK(support::motion_laws(drive, ticks) == "");
 }
 
+TEST_CASE("derivatives of a drive are those of its poses, forwards and backwards, uphill and in curves") {
+  const auto drive = plan_ground_vehicle(Points{{0, 0}, {0, 40}, {3, 0}, {30, 20}, {60, 20}}, hills, {});
+  std::vector<Tick> ticks{{}, drive.duration(), drive.duration() + Tick{1, 0}};
+  for (int i = -5; i < 1000; ++i) ticks.push_back(Tick::of_seconds(drive.duration().seconds() * i / 990));
+  CHECK(support::derivative_laws(drive, ticks) == "");
+  const auto still = plan_ground_vehicle(Points{{0, 0}}, hills, {});
+  CHECK(support::derivative_laws(still, std::vector<Tick>{{}, {1, 0}}) == "");
+}
+
 TEST_CASE("the guards see a drive that breaks a promise") {
   const Points points{{0, 0}, {0, 40}, {30, 40}, {30, 10}};
   const GroundVehicleSettings s;

@@ -293,6 +293,19 @@ TEST_CASE("a flight keeps the laws of a motion") {
   CHECK(support::motion_laws(flight, ticks) == "");
 }
 
+TEST_CASE("derivatives of a flight are those of its poses") {
+  for (std::uint64_t seed = 0; seed < 10; ++seed) {
+    CAPTURE(seed);
+    Generator random(seed);
+    Points points(6);
+    for (auto& p : points) p = {random.point(30), random.coin() ? 0.0 : 1.0};
+    const auto flight = plan_multicopter(points, {.departure_heading = 2.0, .arrival_heading = 1.0});
+    std::vector<Tick> ticks{{}, flight.duration(), flight.duration() + Tick{1, 0}};
+    for (int i = -5; i < 300; ++i) ticks.push_back(Tick::of_seconds(flight.duration().seconds() * i / 290));
+    CHECK(support::derivative_laws(flight, ticks) == "");
+  }
+}
+
 TEST_CASE("the guard sees a flight that breaks a limit") {
   const Points points{{{0, 0, 9}}, {{0, 100, 9}}, {{100, 100, 9}}};
   const auto flight = plan_multicopter(points, {});

@@ -67,6 +67,14 @@ TEST_CASE("straight lines of any length keep the laws of a motion") {
   }
 }
 
+TEST_CASE("the velocity of a straight line is its speed on the way, and nothing behind its end") {
+  const StraightLine line{.from = {1, 2, 3}, .to = {31, 42, 3}, .speed = 5};
+  CHECK(length(line.derivatives({3, 0.5}).velocity - Vec3{3, 4, 0}) < 1e-15);
+  for (const Tick t : {Tick{10, 0}, Tick{10, 0.1}}) CHECK(line.derivatives(t).velocity == Vec3{});
+  const std::vector<Tick> ticks{{}, {1, 0.3}, {9, 0.9}, {10, 0}, {11, 0}};
+  CHECK(support::derivative_laws(line, ticks) == "");
+}
+
 TEST_CASE("a straight line refuses what cannot be flown") {
   const double nan = std::numeric_limits<double>::quiet_NaN(), inf = std::numeric_limits<double>::infinity();
   CHECK_NOTHROW(StraightLine{}.validate());

@@ -33,6 +33,7 @@ TEST_CASE("a tripod keeps the laws of a motion and does not move") {
   const Tripod tripod{.position = {1, 2, 3}, .heading = 0.7};
   const std::vector<Tick> ticks{{0, 0}, {0, 0.5}, {1000000, 0.25}};
   CHECK(support::motion_laws(tripod, ticks) == "");
+  CHECK(support::derivative_laws(tripod, ticks) == "");
   CHECK(tripod.at(ticks[0]).position == tripod.at(ticks[2]).position);
 }
 

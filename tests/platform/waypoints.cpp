@@ -162,6 +162,24 @@ TEST_CASE("waypoints keep the laws of a motion") {
   }
 }
 
+TEST_CASE("derivatives of waypoints are those of their poses, whichever way they turn") {
+  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+    CAPTURE(seed);
+    for (const auto kind : {Interpolation::linear, Interpolation::cubic}) {
+      support::Generator any(seed);
+      std::vector<TimedPose> points;
+      for (double time = any.uniform(0, 10); points.size() < 10; time += any.log_uniform(0.3, 10))
+        points.push_back({.time = time, .position = any.point(20), .rotation = any.rotation()});
+      points[5].time = points[4].time;
+      const Waypoints path(points, kind);
+      std::vector<Tick> ticks{{}, path.duration(), path.duration() + Tick{1, 0}};
+      for (const TimedPose& p : points) ticks.push_back(at(p.time));
+      for (int k = 0; k < 100; ++k) ticks.push_back(at(any.uniform(0, points.back().time)));
+      CHECK(support::derivative_laws(path, ticks, 3e-5) == "");
+    }
+  }
+}
+
 TEST_CASE(
     "where a time stands twice, a body jumps: it arrives as the first waypoint says, and is from then on where the "
     "last one does") {

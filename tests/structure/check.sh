@@ -44,7 +44,7 @@ includes_of_higher_layers() {
     may["shape"] = words " concepts accel material"
     may["scene"] = may["shape"] " shape"
     may["transport"] = may["scene"] " scene scanner detector"
-    may["sensor"] = words " concepts pulse_lanes stage_arguments scanner deflector detector"
+    may["sensor"] = words " concepts pulse_lanes stage_arguments scanner deflector detector platform"
     may["survey"] = may["scene"] " scene scanner deflector platform detector transport cloud stage_arguments pulse_lanes"
     may["any_survey"] = may["result_buffer"] = words " concepts"
     may["sample"] = words " concepts result_buffer any_survey"

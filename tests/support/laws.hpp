@@ -55,6 +55,11 @@ bool same(const Pose<From, To>& a, const Pose<From, To>& b) noexcept {
          same(a.rotation.y, b.rotation.y) && same(a.rotation.z, b.rotation.z);
 }
 
+inline bool same(const Derivatives& a, const Derivatives& b) noexcept {
+  return same(a.velocity, b.velocity) && same(a.acceleration, b.acceleration) && same(a.angular_rate, b.angular_rate) &&
+         same(a.angular_acceleration, b.angular_acceleration);
+}
+
 template <class From, class To>
 bool same(const std::optional<Pose<From, To>>& a, const std::optional<Pose<From, To>>& b) noexcept {
   return a && b ? same(*a, *b) : !a && !b;
@@ -173,6 +178,43 @@ template <class M>
     }
   for (const Tick& t : ticks)
     if (!detail::rigid(motion.at(t))) return detail::sentence("the pose at ", t.seconds(), " s is not rigid");
+  return {};
+}
+
+/// Derivatives are pure, and those of the poses from a tick on, to a share of them [per unit]: by differences over 1/4096 s
+/// and over half of it, where these agree; elsewhere a motion jumps within them. Most ticks must be checked.
+template <Differentiable M>
+[[nodiscard]] std::string derivative_laws(const M& motion, std::span<const Tick> ticks, double share = 1e-5) {
+  if (auto broken =
+          detail::purity_laws(motion, ticks.size(), [&](const M& m, std::size_t k) { return m.derivatives(ticks[k]); });
+      !broken.empty())
+    return broken;
+  std::size_t checked = 0;
+  for (const Tick& t : ticks) {
+    const Derivatives stated = motion.derivatives(t);
+    const auto now = motion.at(t);
+    const auto slope = [&](const auto& value, double h) {
+      const Vec3 here = value(t), next = value(t + Tick::of_seconds(h)), last = value(t + Tick::of_seconds(2 * h));
+      return (4.0 * next - 3.0 * here - last) / (2 * h);
+    };
+    bool smooth = true;
+    const auto differs = [&](const Vec3& found, const auto& value) {
+      const Vec3 coarse = slope(value, 1.0 / 8192), fine = slope(value, 1.0 / 16384);
+      const double most = share * (1 + length(fine));
+      if (length(coarse - fine) > most) smooth = false;
+      return smooth && !(length(found - fine) <= 3 * most);
+    };
+    const auto moved = [&](Tick at) { return motion.at(at).position - now.position; };
+    const auto turned = [&](Tick at) { return rotation_vector(conjugate(now.rotation) * motion.at(at).rotation); };
+    if (differs(stated.velocity, moved)) return detail::sentence("the velocity differs at ", t.seconds(), " s");
+    if (differs(stated.angular_rate, turned)) return detail::sentence("the angular rate differs at ", t.seconds(), " s");
+    if (differs(stated.acceleration, [&](Tick at) { return motion.derivatives(at).velocity; }))
+      return detail::sentence("the acceleration differs at ", t.seconds(), " s");
+    if (differs(stated.angular_acceleration, [&](Tick at) { return motion.derivatives(at).angular_rate; }))
+      return detail::sentence("the angular acceleration differs at ", t.seconds(), " s");
+    checked += smooth ? 1 : 0;
+  }
+  if (2 * checked < ticks.size()) return detail::sentence("the motion is smooth at ", checked, " ticks only");
   return {};
 }
 

@@ -52,6 +52,23 @@ template <class A, class B, class C>
   return {c_from_b.rotation * b_from_a.rotation, c_from_b.point(b_from_a.position)};
 }
 
+/// First and second derivatives in time of the pose of a moving frame.
+struct Derivatives {
+  Vec3 velocity{};              ///< of its origin, in the frame that it moves in [m/s]
+  Vec3 acceleration{};          ///< of its origin, in that frame, too [m/s^2]
+  Vec3 angular_rate{};          ///< along its own axes [rad/s]
+  Vec3 angular_acceleration{};  ///< derivative of these numbers [rad/s^2]
+
+  /// Turns the moving frame by a further rotation, which is `turn` now: to these axes from the former ones,
+  /// at a rate [rad/s] and an angular acceleration [rad/s^2] along these axes. Source: derivative of `turn^-1 rate`.
+  void turn_by(const Rotation& turn, const Vec3& rate, const Vec3& angular) noexcept {
+    const Rotation back = conjugate(turn);
+    const Vec3 carried = back * angular_rate;
+    angular_rate = carried + rate;
+    angular_acceleration = back * angular_acceleration + cross(carried, rate) + angular;
+  }
+};
+
 /// Pose of a body at a point in time.
 struct TimedPose {
   double time = 0;                  ///< time since the start of its leg or survey [s]

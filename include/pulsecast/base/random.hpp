@@ -28,6 +28,7 @@ enum class Purpose : std::uint32_t {
   scattering = 12,   ///< directions of light that is scattered on
   drops = 13,        ///< rain and snow in the beam
   calibration = 14,  ///< errors that are drawn once
+  inertial_noise = 15,
 };
 
 /// Key of a random number: the same key gives the same number on any thread, in any order.

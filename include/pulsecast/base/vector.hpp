@@ -83,6 +83,19 @@ inline const Rotation no_rotation = detail::rotation_wxyz(1, 0, 0, 0);  ///< ide
   return glm::angleAxis(angle, normalize(axis));
 }
 
+/// Rotation vector of a unit quaternion: axis times angle, by the smaller angle [rad].
+[[nodiscard]] inline Vec3 rotation_vector(const Rotation& rotation) noexcept {
+  const Vec3 half{rotation.x, rotation.y, rotation.z};
+  const double sine = length(half), angle = 2 * std::atan2(sine, std::fabs(rotation.w));
+  return (sine > 0 ? std::copysign(angle / sine, rotation.w) : 2) * half;
+}
+
+/// Rotation of a rotation vector [rad]. Inverse of `rotation_vector`.
+[[nodiscard]] inline Rotation rotation_by(const Vec3& vector) noexcept {
+  const double angle = length(vector);
+  return angle > 0 ? glm::angleAxis(angle, vector / angle) : no_rotation;
+}
+
 /// Rotation matrix: columns are the rotated x, y, z. Cheaper than a quaternion for several vectors.
 using Matrix3 = glm::mat<3, 3, double, glm::packed_highp>;
 /// Matrix of a unit quaternion.

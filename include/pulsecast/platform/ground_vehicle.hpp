@@ -3,9 +3,7 @@
 #ifndef PULSECAST_PLATFORM_GROUND_VEHICLE_HPP
 #define PULSECAST_PLATFORM_GROUND_VEHICLE_HPP
 
-#include <pulsecast/concepts.hpp>
-#include <pulsecast/platform/detail/curved_path.hpp>
-#include <pulsecast/platform/detail/speed_profile.hpp>
+#include <pulsecast/platform/detail/ground_vehicle_drive.hpp>
 
 namespace PULSECAST_NAMESPACE {
 
@@ -34,70 +32,6 @@ struct GroundVehicleSettings {
     const double height = height_without_ground.value_or(0);
     require_within("GroundVehicleSettings::height_without_ground", height, -1e9, 1e9, "m");
   }
-};
-
-/// Pose of a vehicle relative to the map: the plane through its four wheels.
-struct Footing {
-  double height = 0;  ///< height of the middle of the rear axle, at the foot of the wheels [m]
-  double ahead = 0;   ///< slope forwards, positive upwards [m/m]
-  double aside = 0;   ///< slope to the right, positive upwards [m/m]
-  double along = 0;   ///< length driven in space since the start of its section [m]
-
-  /// Attitude by heading, then pitch, then roll, so that up is normal to the plane.
-  /// Source: Rx(p) Ry(r) up = (sin r, -sin p cos r, cos p cos r), along (-aside, -ahead, 1).
-  [[nodiscard]] Rotation attitude(double heading) const noexcept {
-    const double pitch = std::atan(ahead);
-    return level(heading) * rotation_about(axis::right, pitch) *
-           rotation_about(axis::forward, -std::atan(aside * std::cos(pitch)));
-  }
-};
-
-/// Drive over the ground. The body's origin is the middle of the rear axle, at the height of the
-/// wheels' contact. Position, speed in space and attitude are continuous; it stops to change gear.
-class GroundVehicleDrive {
- public:
-  /// Piece of the path, with footings at equal distances along it on the map, both ends included.
-  struct Section {
-    PathPiece path{};                 ///< piece of the path, on the map
-    double start = 0;                 ///< length driven before, in space [m]
-    std::vector<Footing> footings{};  ///< footings from its start to its end
-  };
-
-  /// `driven` is the length driven in space over time [m]: see `plan_ground_vehicle`.
-  GroundVehicleDrive(std::vector<Section> sections, PiecewiseCubic<double> driven, Tick duration,
-                     std::vector<std::string> warnings = {})
-      : sections_(std::move(sections)),
-        driven_(std::move(driven)),
-        duration_(duration),
-        warnings_(std::move(warnings)) {}
-
-  [[nodiscard]] Pose<frame::Body, frame::World> at(Tick t) const noexcept {
-    const double driven = driven_.at(t).position;
-    const auto starts_before = [&](std::size_t i) noexcept { return !(driven < sections_[i].start); };
-    const Section& section = sections_[detail::neighbours(sections_.size(), starts_before).before];
-    const double along = driven - section.start, steps = static_cast<double>(section.footings.size() - 1);
-    const auto passed = [&](std::size_t i) noexcept { return !(along < section.footings[i].along); };
-    const auto [k, next] = detail::neighbours(section.footings.size(), passed);
-    const Footing &a = section.footings[k], &b = section.footings[next];
-    const double part = k < next ? (along - a.along) / (b.along - a.along) : 0;
-    const Stance stance = section.path.after(section.path.length * ((static_cast<double>(k) + part) / steps));
-    const Footing footing{std::lerp(a.height, b.height, part), std::lerp(a.ahead, b.ahead, part),
-                          std::lerp(a.aside, b.aside, part)};
-    return {footing.attitude(stance.heading), {stance.position.x, stance.position.y, footing.height}};
-  }
-
-  [[nodiscard]] Tick duration() const noexcept { return duration_; }
-  [[nodiscard]] const std::vector<Section>& sections() const noexcept { return sections_; }  ///< by time
-  /// Length driven in space, forwards plus backwards [m].
-  [[nodiscard]] const PiecewiseCubic<double>& driven() const noexcept { return driven_; }
-  /// Sentences about ground that no vehicle drives over: too steep, or with gaps.
-  [[nodiscard]] const std::vector<std::string>& warnings() const noexcept { return warnings_; }
-
- private:
-  std::vector<Section> sections_;
-  PiecewiseCubic<double> driven_;
-  Tick duration_;
-  std::vector<std::string> warnings_;
 };
 
 namespace detail {

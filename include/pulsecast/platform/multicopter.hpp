@@ -48,6 +48,7 @@ struct MulticopterSettings {
 /// lift, tan(bank) = v^2 / (g r) in a level turn. Position, velocity and attitude are continuous.
 class MulticopterFlight {
  public:
+  using refinements = refines<tag::Differentiable>;
   /// `motion` [m]; `heading` clockwise from north [rad]; `passes` by waypoint: `plan_multicopter`.
   MulticopterFlight(PiecewiseCubic<Vec3> motion, PiecewiseCubic<double> heading, Tick duration,
                     std::vector<Tick> passes = {})
@@ -58,6 +59,23 @@ class MulticopterFlight {
     const Vec3 thrust = normalize(state.acceleration + standard_gravity * axis::up);
     const Rotation lean = normalize(detail::rotation_wxyz(1 + thrust.z, -thrust.y, thrust.x, 0));
     return {lean * level(heading_.at(t).position), state.position};
+  }
+
+  /// Source: rate of a unit quaternion, twice the vector of q^-1 q', here of q / |q|. Attitude depends on acceleration,
+  /// so its rate jumps with the jerk.
+  [[nodiscard]] Derivatives derivatives(Tick t) const noexcept {
+    const CubicPiece<Vec3> state = motion_.moving_at(t);
+    const CubicPiece<double> heading = heading_.moving_at(t);
+    const Vec3 thrust = state.acceleration + standard_gravity * axis::up, jerk = state.jerk;
+    const Vec3 axis{-thrust.y, thrust.x, 0}, axis_rate{-jerk.y, jerk.x, 0};
+    const double whole = length(thrust), gain = dot(thrust, jerk) / whole,
+                 bend = (dot(jerk, jerk) - gain * gain) / whole;
+    const double w = whole + thrust.z, w_rate = gain + jerk.z, square = w * w + dot(axis, axis);
+    Derivatives d{.velocity = state.velocity, .acceleration = state.acceleration};
+    d.angular_rate = (2 / square) * (w * axis_rate - w_rate * axis - cross(axis, axis_rate));
+    d.angular_acceleration = (-2 / square) * (bend * axis + (w * w_rate + dot(axis, axis_rate)) * d.angular_rate);
+    d.turn_by(level(heading.position), -heading.velocity * axis::up, -heading.acceleration * axis::up);
+    return d;
   }
 
   [[nodiscard]] Tick duration() const noexcept { return duration_; }

@@ -9,7 +9,7 @@ namespace PULSECAST_NAMESPACE {
 
 /// Straight motion at constant speed, at rest after its end. The body is level and looks along it, or north.
 struct StraightLine {
-  using refinements = refines<tag::MovesInLanes, tag::Validated>;
+  using refinements = refines<tag::MovesInLanes, tag::Differentiable, tag::Validated>;
   Vec3 from{};          ///< start, in the world [m]
   Vec3 to{0, 1000, 0};  ///< end, in the world [m]
   double speed = 60;    ///< speed along the path, slopes included [m/s]
@@ -25,6 +25,10 @@ struct StraightLine {
   [[nodiscard]] Tick duration() const noexcept { return Tick::of_seconds(length(to - from) / speed); }
 
   [[nodiscard]] auto at(Tick t) const noexcept { return pose_in_lanes(*this, t); }
+  [[nodiscard]] Derivatives derivatives(Tick t) const noexcept {
+    const double whole = length(to - from);
+    return speed * t.seconds() < whole ? Derivatives{.velocity = (speed / whole) * (to - from)} : Derivatives{};
+  }
 
   /// One copy of the code, as compilers may contract products and sums in different ways.
   [[gnu::noinline]] simd::Mask poses(const TickLanes& t, PoseLanes<frame::Body, frame::World>& poses) const noexcept {

@@ -9,7 +9,7 @@ namespace PULSECAST_NAMESPACE {
 
 /// Static trajectory, level.
 struct Tripod {
-  using refinements = refines<tag::MovesInLanes, tag::Validated>;
+  using refinements = refines<tag::MovesInLanes, tag::Differentiable, tag::Validated>;
   Vec3 position{};     ///< foot of the tripod, in the world [m]
   double heading = 0;  ///< compass heading, clockwise from north [rad]
 
@@ -21,6 +21,7 @@ struct Tripod {
   }
 
   [[nodiscard]] Pose<frame::Body, frame::World> at(Tick) const noexcept { return {level(heading), position}; }
+  [[nodiscard]] Derivatives derivatives(Tick) const noexcept { return {}; }
 
   simd::Mask poses(const TickLanes& t, PoseLanes<frame::Body, frame::World>& poses) const noexcept {
     poses = PoseLanes(at(t[0]));

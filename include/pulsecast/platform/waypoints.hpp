@@ -22,7 +22,7 @@ enum class Interpolation : std::uint8_t {
 /// it on the last. Cubic positions are interpolated on either side alone.
 class Waypoints {
  public:
-  using refinements = refines<tag::MovesInLanes>;
+  using refinements = refines<tag::MovesInLanes, tag::Differentiable>;
   /// From 1 to 1e9 waypoints, times not decreasing. Throws a `SettingError`.
   explicit Waypoints(std::vector<TimedPose> points, Interpolation positions = Interpolation::linear)
       : points_(std::move(points)) {
@@ -48,6 +48,21 @@ class Waypoints {
   [[nodiscard]] const std::vector<TimedPose>& points() const noexcept { return points_; }
 
   [[nodiscard]] auto at(Tick t) const noexcept { return pose_in_lanes(*this, t); }
+
+  [[nodiscard]] Derivatives derivatives(Tick t) const noexcept {
+    const auto about = neighbours_of(t.seconds());
+    if (about.before == about.behind) return {};
+    const TimedPose &a = points_[about.before], &b = points_[about.behind];
+    const double interval = b.time - a.time, s = ((static_cast<double>(t.second) - a.time) + t.fraction) / interval;
+    const Vec3 path = b.position - a.position;
+    Derivatives d{.velocity = path / interval,
+                  .angular_rate = rotation_vector(conjugate(a.rotation) * b.rotation) / interval};
+    if (velocities_.empty()) return d;
+    const auto [leaving, square, cube] = cubic_between(path, interval, about);
+    d.velocity = (leaving + s * (2.0 * square + s * (3.0 * cube))) / interval;
+    d.acceleration = (2.0 * square + (6.0 * s) * cube) / (interval * interval);
+    return d;
+  }
 
   simd::Mask poses(const TickLanes& ticks, PoseLanes<frame::Body, frame::World>& poses) const noexcept {
     const simd::Doubles t = ticks.seconds();
@@ -83,10 +98,19 @@ class Waypoints {
       poses.position = poses.position + s * Vec3Lanes(path);
       return;
     }
-    // source: cubic Hermite polynomial in powers of s
+    const Cubic way = cubic_between(path, interval, about);
+    poses.position =
+        poses.position + s * (Vec3Lanes(way.leaving) + s * (Vec3Lanes(way.square) + s * Vec3Lanes(way.cube)));
+  }
+
+  /// Way from a waypoint to the next, in powers of the share of time.
+  struct Cubic {
+    Vec3 leaving, square, cube;
+  };
+  /// Source: cubic Hermite polynomial.
+  [[nodiscard]] Cubic cubic_between(const Vec3& path, double interval, const detail::Neighbours& about) const noexcept {
     const Vec3 leaving = interval * velocities_[about.before], arriving = interval * velocities_[about.behind];
-    const Vec3Lanes square(3.0 * path - 2.0 * leaving - arriving), cube(leaving + arriving - 2.0 * path);
-    poses.position = poses.position + s * (Vec3Lanes(leaving) + s * (square + s * cube));
+    return {leaving, 3.0 * path - 2.0 * leaving - arriving, leaving + arriving - 2.0 * path};
   }
 
   /// Rotations between two, at a constant rate by the smaller angle. Source: Shoemake 1985.

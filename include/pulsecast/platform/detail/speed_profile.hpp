@@ -52,6 +52,16 @@ class PiecewiseCubic {
     return now.piece.after(std::clamp(elapsed, 0.0, now.piece.duration));
   }
 
+  /// As `at`, but at rest while a state holds on. Ticks are rounded: in the last picosecond of a piece, as in the next.
+  [[nodiscard]] CubicPiece<V> moving_at(Tick t) const noexcept {
+    constexpr double rounding = 1e-12;
+    const CubicPiece<V> state = at(t);
+    if (state.duration > rounding) return state;
+    CubicPiece<V> next = at(t + Tick{0, rounding});
+    next.position = state.position;
+    return next.duration > 0 ? next : CubicPiece<V>{.position = state.position};
+  }
+
   struct Timed {
     Tick start;           ///< start of the piece
     CubicPiece<V> piece;  ///< motion from its start on
