@@ -149,8 +149,8 @@ class DriveBag {
   /// Keeps the message until those of earlier times have come.
   void keep(std::uint16_t channel, std::uint64_t publish_time, const Tick& complete) {
     const std::uint64_t log_time = stamp(complete);
-    require_within("DriveBag::write (time since the last advance)",
-                   (static_cast<double>(log_time) - static_cast<double>(end_)) * 1e-9, 0, 1e10, "s");
+    if (log_time < end_)
+      throw SettingError("DriveBag::write (time)", complete.seconds(), "s", "not before that of the last advance");
     waiting_.push_back({log_time, publish_time, waiting_bytes_.size(), message_.size(), channel});
     waiting_bytes_.insert(waiting_bytes_.end(), message_.begin(), message_.end());
   }

@@ -228,45 +228,60 @@ struct SweepSettings {
       {{"range", NumberType::float32, column("range")}, {"intensity", NumberType::float32, column("reflectivity")}});
 }
 
-/// Message of a sweep in a `sweep_layout()`, with numbers in `memory`. @throws SettingError unless its grid has one row
-[[nodiscard]] inline LaserScan laser_scan_of(const PointBuffer& sweep, const SweepSettings& settings,
-                                             std::vector<float>& memory) {
-  const std::size_t beams = sweep.size();
-  require_within("PointGrid::rows, as a LaserScan", sweep.grid().rows, 1, 1, "");
-  memory.resize(2 * beams);
-  for (std::size_t i = 0; i < memory.size(); ++i)
-    memory[i] = static_cast<float>(sweep.number(i % beams, sweep.layout().fields[i / beams]));
-  const std::span<float> ranges(memory.data(), beams);
-  std::ranges::replace_if(
-      ranges, [](float r) { return std::isnan(r); }, std::numeric_limits<float>::infinity());
-  const auto single = [](double number) { return static_cast<float>(number); };
-  const double last = settings.angle_min + settings.angle_increment * static_cast<double>(beams - 1);
-  return {.angle_min = single(settings.angle_min),
-          .angle_max = single(last),
-          .angle_increment = single(settings.angle_increment),
-          .time_increment = single(1 / sweep.grid().column_rate),
-          .scan_time = single(settings.scan_time),
-          .range_min = single(settings.gate.near),
-          .range_max = single(settings.gate.far),
-          .ranges = ranges,
-          .intensities = std::span(memory).subspan(beams)};
+namespace detail {
+
+/// @throws SettingError unless the fields of a layout begin with these
+inline void require_fields(const PointLayout& layout, std::initializer_list<std::string_view> names) {
+  for (std::size_t i = 0; i < names.size(); ++i)
+    if (i >= layout.fields.size() || layout.fields[i].name != names.begin()[i])
+      throw SettingError("PointLayout::fields (index)", static_cast<double>(i), "",
+                         text::joined({"that of '", names.begin()[i], "', for this message"}));
 }
 
-/// Depths of the points of a grid in a layout that begins with x, y, z: metres along the forward axis, +infinity
-/// without a return (ROS REP 118), in `memory`. @throws SettingError without a grid
+/// Numbers in a field of the points of a grid; `missing` in place of NaN.
+inline void take_numbers(const PointBuffer& points, const PointField& field, float missing, float* to) {
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const auto number = static_cast<float>(points.number(i, field));
+    to[i] = std::isnan(number) ? missing : number;
+  }
+}
+inline constexpr float no_return = std::numeric_limits<float>::infinity();  ///< ROS REP 117
+
+}  // namespace detail
+
+/// Message of a sweep, with its numbers in `memory`. @throws SettingError for another layout or no grid of one row
+[[nodiscard]] inline LaserScan laser_scan_of(const PointBuffer& sweep, const SweepSettings& settings,
+                                             std::vector<float>& memory) {
+  const auto [rows, beams, rate] = sweep.grid();
+  require_within("PointGrid::rows, as a LaserScan", rows, 1, 1, "");
+  detail::require_fields(sweep.layout(), {"range", "intensity"});
+  memory.resize(std::size_t{2} * beams);
+  detail::take_numbers(sweep, sweep.layout().fields[0], detail::no_return, memory.data());
+  detail::take_numbers(sweep, sweep.layout().fields[1], 0, memory.data() + beams);
+  const double last = settings.angle_min + settings.angle_increment * (beams - 1.0);
+  const auto single = [](double number) { return static_cast<float>(number); };
+  return {{},
+          single(settings.angle_min),
+          single(last),
+          single(settings.angle_increment),
+          single(rate > 0 ? 1 / rate : 0),
+          single(settings.scan_time),
+          single(settings.gate.near),
+          single(settings.gate.far),
+          {memory.data(), beams},
+          {memory.data() + beams, beams}};
+}
+
+/// Depths of the points of a grid, whose layout begins with x, y, z: metres along the forward axis, +infinity without a
+/// return (ROS REP 118), in `memory`. @throws SettingError for another layout, or without a grid
 [[nodiscard]] inline Image depth_image_of(const PointBuffer& points, std::vector<float>& memory) {
   const auto [rows, columns, rate] = points.grid();
   require_within("PointGrid::rows, as an Image", rows, 1, 1e6, "");
-  const PointField& depth = points.layout().fields[points.settings().axes == PointAxes::forward_left_up ? 0 : 1];
+  detail::require_fields(points.layout(), {"x", "y"});
+  const bool x_is_forward = points.settings().axes == PointAxes::forward_left_up;
   memory.resize(points.size());
-  for (std::size_t i = 0; i < memory.size(); ++i) memory[i] = static_cast<float>(points.number(i, depth));
-  std::ranges::replace_if(
-      memory, [](float d) { return std::isnan(d); }, std::numeric_limits<float>::infinity());
-  return {.height = rows,
-          .width = columns,
-          .encoding = "32FC1",
-          .step = columns * std::uint32_t{sizeof(float)},
-          .data = std::as_bytes(std::span(memory))};
+  detail::take_numbers(points, points.layout().fields[x_is_forward ? 0 : 1], detail::no_return, memory.data());
+  return {{}, rows, columns, "32FC1", 0, columns * std::uint32_t{sizeof(float)}, std::as_bytes(std::span(memory))};
 }
 
 /// Points of `livox_of`, which lie in memory as a `CustomPoint`.
@@ -282,9 +297,9 @@ struct SweepSettings {
 
 /// Message of a scan in a `livox_layout()`, which it refers to. @throws SettingError for another layout
 [[nodiscard]] inline CustomMsg livox_of(const PointBuffer& scan) {
-  const PointLayout& layout = scan.layout();
-  if (layout.size != sizeof(CustomPoint) || layout.fields.front().name != "offset_time")
-    throw SettingError("PointLayout::size, as a CustomMsg", layout.size, "byte", "that of livox_layout()");
+  detail::require_fields(scan.layout(), {"offset_time", "x", "y", "z", "reflectivity", "tag", "line"});
+  require_within("PointLayout::size, as a CustomMsg", scan.layout().size, sizeof(CustomPoint), sizeof(CustomPoint),
+                 "byte");
   const auto* const points = reinterpret_cast<const CustomPoint*>(scan.records().data());
   return {.point_num = static_cast<std::uint32_t>(scan.size()), .points = {points, scan.size()}};
 }

@@ -36,7 +36,6 @@ namespace detail {
 /// References to the fields of a message.
 template <RosMessage M>
 constexpr auto fields_of(const M& message) {
-  static_assert(M::ros.count() <= 10);
   if constexpr (M::ros.count() == 1) {
     const auto& [a] = message;
     return std::tie(a);
