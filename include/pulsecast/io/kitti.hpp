@@ -42,13 +42,17 @@ void add_kitti_pose(TextOutput& poses, const Pose<From, To>& pose) {
 }  // namespace detail
 
 /// Writes poses of a body as the `poses.txt` of a sequence: in the frame of the first, at the times of the scans. For
-/// TUM: `write_trajectory` with `tum_format()`. @throws FileError
-inline void write_kitti_poses(std::filesystem::path path, std::span<const TimedPose> poses) {
-  using BodyPose = Pose<frame::Body, frame::World>;
-  TextOutput file(OutputFile(std::move(path)));
-  for (const TimedPose& pose : poses)
-    detail::add_kitti_pose(
-        file, BodyPose{poses[0].rotation, poses[0].position}.inverse() * BodyPose{pose.rotation, pose.position});
+/// TUM, `write_trajectory` has `tum_format()`. @throws FileError for poses that are not finite
+inline void write_kitti_poses(const std::filesystem::path& path, std::span<const TimedPose> poses) {
+  TextOutput file{OutputFile(path)};
+  Pose<frame::World, frame::Body> first;
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    const Pose<frame::Body, frame::World> pose{unit(poses[i].rotation), poses[i].position};
+    if (!pose.finite())
+      throw FileError(path.string(), text::message("pose ", i), "cannot be written: expected finite numbers");
+    if (i == 0) first = pose.inverse();
+    detail::add_kitti_pose(file, first * pose);
+  }
   file.close();
 }
 
