@@ -130,6 +130,27 @@ TEST_CASE("times count from the first scan, and poses are of the starts of scans
   CHECK(content(folder / "01/poses.txt") == content(folder / "00/poses.txt"));
 }
 
+TEST_CASE("poses of a body are written as those of the scans") {
+  const TemporaryFolder folder;
+  write(folder / "00", ThreeScans().batch(), {.points = {.sensor = facing_west}});
+  std::vector<TimedPose> truth;
+  for (const double time : {0.0, 0.1, 0.3}) {
+    const SensorPose pose = facing_west(Tick::of_seconds(time));
+    truth.push_back({time, pose.position, pose.rotation});
+  }
+  write_kitti_poses(folder / "poses.txt", truth);
+  std::istringstream found(content(folder / "poses.txt")), expected(content(folder / "00/poses.txt"));
+  double a = 0, b = 0;
+  for (int k = 0; k < 36; ++k) {
+    REQUIRE((static_cast<bool>(found >> a) && static_cast<bool>(expected >> b)));
+    CHECK(std::fabs(a - b) < 1e-9);
+  }
+  CHECK_FALSE(static_cast<bool>(found >> a));
+  truth[1].position.x = std::numeric_limits<double>::infinity();
+  CHECK_THROWS_WITH_AS(write_kitti_poses(folder / "b.txt", truth), doctest::Contains("pose 1"), FileError);
+  CHECK_FALSE(std::filesystem::exists(folder / "b.txt"));
+}
+
 TEST_CASE("poses bring the points of undistorted scans of any motion into the frame of the first") {
   for (std::uint64_t seed = 0; seed < 10; ++seed) {
     CAPTURE(seed);

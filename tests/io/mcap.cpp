@@ -111,6 +111,7 @@ struct Walk {
   std::map<std::uint16_t, std::string> schemas, channels;  // contents of the records, by number
   std::vector<Message> messages;
   std::vector<Chunk> chunks;
+  std::vector<Record> metadata;
 
   explicit Walk(const std::filesystem::path& path) : file(content(path)) {
     const std::string magic("\x89MCAP0\r\n", 8);
@@ -139,6 +140,10 @@ struct Walk {
 
   /// Reads a schema or channel, or a chunk with its indexes; returns the place of the next record.
   std::size_t read_data(const std::vector<Record>& records, std::size_t i) {
+    if (records[i].opcode == 12) {
+      metadata.push_back(records[i]);
+      return i + 1;
+    }
     if (records[i].opcode != 6) {
       REQUIRE((records[i].opcode == 3 || records[i].opcode == 4));
       add_definition(records[i]);
@@ -186,6 +191,7 @@ struct Walk {
     std::vector<Chunk> chunk_copies;
     std::map<int, Times> groups;  // by opcode: start and length
     const std::uint64_t summary = records.at(i).start;
+    std::size_t indexed = 0;  // of the metadata
     for (; records.at(i).opcode != 14; ++i) {
       const Record& record = records[i];
       if (groups.contains(record.opcode)) {
@@ -200,7 +206,14 @@ struct Walk {
             record.content;
       if (record.opcode == 8) chunk_copies.push_back(chunk_index(record));
       if (record.opcode == 11) check_statistics(record);
+      if (record.opcode == 13) {
+        const Record& of = metadata.at(indexed++);
+        Cursor at(record.content);
+        CHECK((at.number<std::uint64_t>() == of.start && at.number<std::uint64_t>() == of.length));
+        CHECK((at.text() == Cursor(of.content).text() && at.at_end()));
+      }
     }
+    CHECK(indexed == metadata.size());
     CHECK((schema_copies == schemas && channel_copies == channels && chunk_copies == chunks && groups.contains(11)));
     const std::uint64_t offsets = records[i].start;
     for (; records.at(i).opcode == 14; ++i) {
@@ -243,8 +256,8 @@ struct Walk {
     }
     Cursor at(record.content);
     CHECK((at.number<std::uint64_t>() == messages.size() && at.number<std::uint16_t>() == schemas.size()));
-    CHECK((at.number<std::uint32_t>() == channels.size() &&
-           at.number<std::uint64_t>() == 0));  // attachments and metadata
+    CHECK((at.number<std::uint32_t>() == channels.size() && at.number<std::uint32_t>() == 0 &&
+           at.number<std::uint32_t>() == metadata.size()));  // 0: attachments
     CHECK(at.number<std::uint32_t>() == chunks.size());
     CHECK((at.number<std::uint64_t>() == times.first && at.number<std::uint64_t>() == times.second));
     for (Cursor map(at.text()); !map.at_end();) {
@@ -320,6 +333,22 @@ TEST_CASE("a header names the profile and the library, and channels of one schem
                                    string_of(string_of("k") + string_of("v") + string_of("l") + string_of("")));
   CHECK(walk.channels.at(3) == id(3) + id(0) + string_of("/d") + string_of("json") + string_of(""));
   CHECK((walk.messages.empty() && walk.chunks.empty()));
+}
+
+TEST_CASE("metadata stand between chunks, with their name and texts, and are indexed") {
+  const TemporaryFolder folder;
+  McapWriter writer(folder / "a.mcap");
+  writer.add_metadata("empty", {});
+  const std::uint16_t channel = writer.add_channel({.topic = "/a"});
+  writer.write(channel, 1, 1, bytes_of("one"));
+  writer.add_metadata("two", {{"k", "v"}, {"l", ""}});
+  writer.write(channel, 2, 2, bytes_of("two"));
+  writer.close();
+  const Walk walk(folder / "a.mcap");
+  REQUIRE((walk.metadata.size() == 2 && walk.chunks.size() == 2));
+  CHECK(walk.metadata[0].content == string_of("empty") + string_of(""));
+  CHECK(walk.metadata[1].content ==
+        string_of("two") + string_of(string_of("k") + string_of("v") + string_of("l") + string_of("")));
 }
 
 TEST_CASE("a file without channels is complete, too") {

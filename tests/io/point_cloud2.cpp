@@ -276,6 +276,27 @@ TEST_CASE("the stamp is the start of the scan by the clock, exact to the nanosec
   CHECK_THROWS_AS(stamp(1e300, {}), SettingError);
 }
 
+TEST_CASE("the rows of a grid are those of its message, which is not dense") {
+  PointBuffer scan(layouts::ouster(), {.rings = {1, 0}}, {.rows = 2, .columns = 5, .column_rate = 100});
+  std::vector<std::byte> message;
+  scan.begin_scan({3, 0});
+  const Shot shot{.tick = {3, 0.025}, .direction = axis::forward, .channel = 0, .echoes = 1};
+  const Echo echo{.range = 7};
+  scan({.shots = {&shot, 1}, .echoes = {&echo, 1}, .samples = {}});
+  serialize_point_cloud2(scan, "os_sensor", message);
+  const Message m = by_rules(message);
+  CHECK((m.height == 2 && m.width == 5 && m.row_step == 5 * 48 && m.data.size() == 2 * 5 * 48 && !m.is_dense));
+  const auto y = [&](std::size_t row, std::size_t column) {
+    float number;
+    std::memcpy(&number, &m.data[row * m.row_step + column * m.point_step + 4], sizeof number);
+    return number;
+  };
+  for (std::size_t row = 0; row < 2; ++row)
+    for (std::size_t column = 0; column < 5; ++column)
+      CHECK((row == 1 && column == 2 ? y(row, column) == 7 : std::isnan(y(row, column))));
+  CHECK(by_fastcdr(message) == m);
+}
+
 TEST_CASE("points of more bytes than the message can count are refused") {
   CHECK(detail::point_cloud2_length(4'294'967'295) == 4'294'967'295);
   CHECK_THROWS_WITH_AS(static_cast<void>(detail::point_cloud2_length(4'294'967'296)),

@@ -28,6 +28,9 @@
 #include <pulsecast/sensor/spinning_sensor.hpp>
 #include <pulsecast/shape/triangle_mesh.hpp>
 
+#include "support/allocations.hpp"
+#include "support/generators.hpp"
+
 namespace pulsecast::io {
 namespace {
 
@@ -341,6 +344,91 @@ TEST_CASE("the covariance of a point turns with its axes, and is NaN where it is
   const std::vector<double> turned = record_of(settings);
   CHECK(turned[0] == doctest::Approx(5));
   CHECK(turned[3] == doctest::Approx(5));
+}
+
+/// Adds a shot with an echo at a range.
+void add_shot(PointBuffer& points, const Shot& shot, double range) {
+  const std::array<Echo, 2> echoes{{{.range = range, .reflectance = 0.5}, {.range = range + 1, .number = 2}}};
+  points({.shots = {&shot, 1}, .echoes = std::span(echoes).first(shot.echoes), .samples = {}});
+}
+
+TEST_CASE("a grid has rings by columns, the first echo of a pulse, and NaN or 0 without one") {
+  const PointLayout layout = PointLayout::packed({{"range", NumberType::float32, column("range")},
+                                                  {"ring", NumberType::uint16, column("ring")},
+                                                  {"time", NumberType::float64, column("time")}});
+  PointBuffer points(layout, {.rings = {1, 0}}, {.rows = 2, .columns = 3, .column_rate = 10});
+  const auto range = [&](std::size_t i) { return points.number(i, layout.fields[0]); };
+  CHECK((points.size() == 6 && std::isnan(range(0)) && points.number(5, layout.fields[1]) == 0));
+  for (const double start : {0.0, 7.0}) {
+    CAPTURE(start);
+    points.begin_scan(Tick::of_seconds(start));
+    const auto tick = [&](double time) { return Tick::of_seconds(start) + Tick::of_seconds(time); };
+    add_shot(points, {.tick = tick(0.0), .direction = axis::forward, .channel = 0, .echoes = 1}, 10);
+    add_shot(points, {.tick = tick(0.25), .direction = axis::forward, .channel = 1, .echoes = 2}, 20);
+    add_shot(points, {.tick = tick(0.15), .direction = axis::forward, .channel = 1, .echoes = 0}, 30);
+    CHECK(points.size() == 6);
+    for (const std::size_t miss : {0U, 1U, 4U, 5U}) {
+      CHECK((std::isnan(range(miss)) && std::isnan(points.number(miss, layout.fields[2]))));
+      CHECK(points.number(miss, layout.fields[1]) == 0);
+    }
+    CHECK((range(3) == 10 && points.number(3, layout.fields[1]) == 1));
+    CHECK((range(2) == 20 && points.number(2, layout.fields[2]) == 0.25));
+  }
+  CHECK(points.echoes_left_out() == 2);
+  add_shot(points, {.tick = {7, 0.3}, .direction = axis::forward, .channel = 0, .echoes = 1}, 10);   // no column
+  add_shot(points, {.tick = {6, 0.95}, .direction = axis::forward, .channel = 0, .echoes = 1}, 10);  // nor before
+  add_shot(points, {.tick = {7, 0.1}, .direction = axis::forward, .channel = 2, .echoes = 1}, 10);   // no row
+  CHECK(points.echoes_left_out() == 5);
+  CHECK((range(3) == 10 && std::isnan(range(0)) && std::isnan(range(5))));
+}
+
+TEST_CASE("each firing of any rate, delay and scan has a place of its own") {
+  for (std::uint64_t seed = 0; seed < 100; ++seed) {
+    CAPTURE(seed);
+    support::Generator any(seed);
+    const double rate = any.log_uniform(10, 1e5), delay = any.coin() ? 0 : any.uniform(0, 0.9 / rate);
+    const std::uint64_t first = any.whole(1'000'000'000);
+    const auto columns = static_cast<std::uint32_t>(1 + any.whole(2000));
+    PointBuffer points(layouts::xyzi(), {}, {.rows = 2, .columns = columns, .column_rate = rate});
+    points.begin_scan(Tick::of(first, rate));
+    for (std::uint64_t i = 0; i < columns; ++i)
+      for (std::uint16_t ring = 0; ring < 2; ++ring)
+        add_shot(points,
+                 {.tick = Tick::of(first + i, rate) + Tick::of_seconds(ring * delay),
+                  .direction = axis::forward,
+                  .channel = ring,
+                  .echoes = 1},
+                 static_cast<double>(1 + i + ring * columns));
+    for (std::size_t i = 0; i < points.size(); ++i)
+      REQUIRE(points.number(i, points.layout().fields[1]) == static_cast<double>(i + 1));
+    CHECK(points.echoes_left_out() == 0);
+  }
+}
+
+TEST_CASE("without a rate, pulses fill a grid row by row, at one time or at any") {
+  PointBuffer points(layouts::xyzi(), {}, {.rows = 3, .columns = 4});
+  points.begin_scan({1, 0});
+  for (PulseIndex i = 0; i < 12; ++i)
+    add_shot(points, {.index = 120 + i, .tick = {1, 0}, .direction = axis::forward, .echoes = 1},
+             1.0 + static_cast<double>(i));
+  for (std::size_t i = 0; i < 12; ++i) CHECK(points.number(i, points.layout().fields[1]) == static_cast<double>(1 + i));
+}
+
+TEST_CASE("a grid allocates nothing after it is made, and grids out of range are refused") {
+  PointBuffer points(layouts::ouster(), {}, {.rows = 64, .columns = 100, .column_rate = 1000});
+  const std::size_t before = support::allocations;
+  for (int scan = 0; scan < 3; ++scan) {
+    points.begin_scan({scan, 0});
+    for (PulseIndex i = 0; i < 100; ++i)
+      add_shot(points, {.tick = Tick{scan, 0} + Tick::of(i, 1000), .direction = axis::forward, .echoes = 1}, 5);
+  }
+  CHECK(support::allocations == before);
+  CHECK_THROWS_WITH_AS(PointBuffer(layouts::xyzi(), {}, {.rows = 1}), doctest::Contains("PointGrid::columns"),
+                       SettingError);
+  CHECK_THROWS_AS(PointBuffer(layouts::xyzi(), {}, {.rows = 100'000, .columns = 100'000}), SettingError);
+  CHECK_THROWS_AS(PointBuffer(layouts::xyzi(), {}, {.rows = 1, .columns = 1, .column_rate = -1}), SettingError);
+  CHECK_THROWS_AS(PointBuffer(layouts::xyzi(), {}, {.rows = 1, .columns = 1, .column_rate = std::nan("")}),
+                  SettingError);
 }
 
 }  // namespace

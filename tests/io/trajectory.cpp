@@ -305,6 +305,19 @@ TEST_CASE("a written trajectory looks like its format") {
   CHECK(text(tum_format()).starts_with("10 476200 5474300.5 600 "));
 }
 
+TEST_CASE("ground truth at ticks is written for TUM in axes of robots, by the clock") {
+  const TemporaryFolder folder;
+  const std::vector<Tick> ticks{{0, 0}, {0, 0.5}, {2, 0.25}};
+  write_trajectory(folder / "t.txt", timed_poses(East{level(pi / 2)}, ticks), tum_format(), 1000);
+  std::istringstream found(content(folder / "t.txt"));
+  for (const Tick& tick : ticks)
+    for (const double expected : {1000 + tick.seconds(), 2 * tick.seconds(), 10.0, 100.0, 0.0, 0.0, 0.0, 1.0}) {
+      double number = 0;
+      REQUIRE(static_cast<bool>(found >> number));
+      CHECK(std::fabs(number - expected) < 1e-12);
+    }
+}
+
 TEST_CASE("a jump, and a rotation of single precision, are written and read") {
   const TemporaryFolder folder;
   const Rotation rounded{0.6F, 0, 0, 0.8F};

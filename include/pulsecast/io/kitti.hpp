@@ -27,6 +27,35 @@ using KittiClasses = std::map<std::uint16_t, std::uint16_t>;
           {19, 52}};  // overhead structure: other-structure
 }
 
+namespace detail {
+
+/// Adds a pose in the frame of the first one as a row: 3 by 4, by rows, axes x forward, y left, z up.
+template <class From, class To>
+void add_kitti_pose(TextOutput& poses, const Pose<From, To>& pose) {
+  const auto column = [&](const Vec3& axis) { return to_forward_left_up(pose.rotation * from_forward_left_up(axis)); };
+  const Vec3 x = column({1, 0, 0}), y = column({0, 1, 0}), z = column({0, 0, 1});
+  const Vec3 at = to_forward_left_up(pose.position);
+  for (int row = 0; row < 3; ++row) poses.reals(12, x[row], y[row], z[row], at[row]);
+  poses.end_row();
+}
+
+}  // namespace detail
+
+/// Writes poses of a body as the `poses.txt` of a sequence: in the frame of the first, at the times of the scans. For
+/// TUM, `write_trajectory` has `tum_format()`. @throws FileError for poses that are not finite
+inline void write_kitti_poses(const std::filesystem::path& path, std::span<const TimedPose> poses) {
+  TextOutput file{OutputFile(path)};
+  Pose<frame::World, frame::Body> first;
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    const Pose<frame::Body, frame::World> pose{unit(poses[i].rotation), poses[i].position};
+    if (!pose.finite())
+      throw FileError(path.string(), text::message("pose ", i), "cannot be written: expected finite numbers");
+    if (i == 0) first = pose.inverse();
+    detail::add_kitti_pose(file, first * pose);
+  }
+  file.close();
+}
+
 /// Settings of a SemanticKITTI sequence.
 struct KittiSettings {
   double scan_rate = 10;                   ///< scans per second [Hz]
@@ -132,14 +161,7 @@ class KittiWriter {
 
   void write_pose(const Pose<frame::Instrument, frame::World>& sensor) {
     if (!first_) first_ = sensor.inverse();
-    const auto pose = *first_ * sensor;
-    const auto column = [&](const Vec3& axis) {
-      return to_forward_left_up(pose.rotation * from_forward_left_up(axis));
-    };
-    const Vec3 x = column({1, 0, 0}), y = column({0, 1, 0}), z = column({0, 0, 1});
-    const Vec3 at = to_forward_left_up(pose.position);
-    for (int row = 0; row < 3; ++row) poses_.reals(12, x[row], y[row], z[row], at[row]);
-    poses_.end_row();
+    detail::add_kitti_pose(poses_, *first_ * sensor);
   }
 
   std::filesystem::path folder_;

@@ -48,6 +48,8 @@ enum class McapOpcode : std::uint8_t {
   message_index = 0x07,
   chunk_index = 0x08,
   statistics = 0x0B,
+  metadata = 0x0C,
+  metadata_index = 0x0D,
   summary_offset = 0x0E,
   data_end = 0x0F
 };
@@ -74,6 +76,12 @@ class McapRecord {
     return add_list([&] {
       const auto from = std::as_bytes(std::span(text));
       bytes_.insert(bytes_.end(), from.begin(), from.end());
+    });
+  }
+
+  McapRecord& add(const std::map<std::string, std::string>& texts) {
+    return add_list([&] {
+      for (const auto& [key, text] : texts) add(key).add(text);
     });
   }
 
@@ -130,6 +138,14 @@ class McapWriter {
     }
     put_channel(id);
     return id;
+  }
+
+  /// Appends texts by keys, under a name. @throws FileError
+  void add_metadata(const std::string& name, const std::map<std::string, std::string>& texts) {
+    if (in_chunk_) end_chunk();
+    metadata_.push_back({name, file_.position(), 0});
+    put(record_.begin(Opcode::metadata).add(name).add(texts));
+    metadata_.back().size = file_.position() - metadata_.back().start;
   }
 
   /// Appends a message to a channel, with the times when it was recorded and published [ns].
@@ -195,6 +211,11 @@ class McapWriter {
     [[nodiscard]] std::uint64_t records() const noexcept { return start + detail::mcap_chunk_head; }
   };
 
+  struct Metadata {
+    std::string name;
+    std::uint64_t start, size;  // of its record [byte]
+  };
+
   /// Records of one kind in the summary.
   struct Group {
     Opcode opcode;
@@ -217,10 +238,7 @@ class McapWriter {
   void put_channel(std::size_t id) {
     const McapChannel& of = channels_[id].settings;
     record_.begin(Opcode::channel).add(static_cast<std::uint16_t>(id)).add(channels_[id].schema);
-    record_.add(of.topic).add(of.message_encoding);
-    put(record_.add_list([&] {
-      for (const auto& [key, value] : of.metadata) record_.add(key).add(value);
-    }));
+    put(record_.add(of.topic).add(of.message_encoding).add(of.metadata));
   }
 
   /// Head of a chunk, to be overwritten when its length and times are known.
@@ -273,6 +291,10 @@ class McapWriter {
     put_group(Opcode::chunk_index, [&] {
       for (const Chunk& chunk : chunks_) put_chunk_index(chunk);
     });
+    put_group(Opcode::metadata_index, [&] {
+      for (const auto& [name, start, size] : metadata_)
+        put(record_.begin(Opcode::metadata_index).add(start).add(size).add(name));
+    });
     return groups;
   }
 
@@ -287,7 +309,7 @@ class McapWriter {
     for (const Chunk& chunk : chunks_) times.add(chunk.times.first, chunk.times.last);
     const auto channels = static_cast<std::uint32_t>(channels_.size());
     record_.begin(Opcode::statistics).add(messages).add(schemas).add(channels);
-    record_.add(std::uint64_t{0});  // attachments, metadata records
+    record_.add(std::uint32_t{0}).add(static_cast<std::uint32_t>(metadata_.size()));  // attachments, metadata
     record_.add(static_cast<std::uint32_t>(chunks_.size())).add(times.first).add(times.last);
     put(record_.add_list([&] {
       for (std::size_t id = 0; id < channels_.size(); ++id)
@@ -309,6 +331,7 @@ class McapWriter {
   detail::McapRecord record_;  // the one under construction, kept for its memory
   std::vector<Channel> channels_;
   std::vector<Chunk> chunks_;
+  std::vector<Metadata> metadata_;
   bool in_chunk_ = false;  // true if the last chunk is open
 };
 

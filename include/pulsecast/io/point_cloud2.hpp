@@ -3,10 +3,7 @@
 #ifndef PULSECAST_IO_POINT_CLOUD2_HPP
 #define PULSECAST_IO_POINT_CLOUD2_HPP
 
-#include <fastcdr/Cdr.h>
-#include <fastcdr/FastBuffer.h>
-
-#include <pulsecast/io/point_records.hpp>
+#include <pulsecast/io/ros_messages.hpp>
 
 /// Scans as ROS 2 messages, without ROS. Recording with `io/mcap` and `io/scan_splitter`:
 ///
@@ -23,50 +20,57 @@
 ///     bag.close();
 namespace PULSECAST_NAMESPACE::io {
 
-/// Name of the message type.
-inline constexpr const char* point_cloud2_type = "sensor_msgs/msg/PointCloud2";
+namespace ros {
 
-/// Definition of the message type and its parts, in the encoding "ros2msg". Source: ROS 2 packages
-/// sensor_msgs, std_msgs and builtin_interfaces; MCAP format registry, ros2msg.
-inline constexpr const char* point_cloud2_definition = R"(std_msgs/Header header
-uint32 height
-uint32 width
-sensor_msgs/PointField[] fields
-bool is_bigendian
-uint32 point_step
-uint32 row_step
-uint8[] data
-bool is_dense
-================================================================================
-MSG: std_msgs/Header
-builtin_interfaces/Time stamp
-string frame_id
-================================================================================
-MSG: builtin_interfaces/Time
-int32 sec
-uint32 nanosec
-================================================================================
-MSG: sensor_msgs/PointField
-string name
-uint32 offset
-uint8 datatype
-uint32 count
-)";
+/// Field of the points of a message.
+struct PointField {
+  std::string_view name{};    ///< name
+  std::uint32_t offset = 0;   ///< position in a point [byte]
+  std::uint8_t datatype = 0;  ///< as `NumberType`
+  std::uint32_t count = 1;    ///< numbers
+  static constexpr Description ros{"sensor_msgs/msg/PointField", "name offset datatype count"};
+};
+
+/// Fields of a layout as those of a message, which has no 64-bit integers.
+struct PointFields {
+  using value_type = PointField;
+  std::span<const io::PointField> of{};  ///< of a layout
+
+  [[nodiscard]] std::size_t size() const noexcept { return of.size(); }
+  [[nodiscard]] PointField operator[](std::size_t i) const noexcept {
+    return {of[i].name, of[i].offset, static_cast<std::uint8_t>(std::min(of[i].type, NumberType::float64))};
+  }
+};
+
+/// Points: records in rows.
+struct PointCloud2 {
+  Header header{};                    ///< time and frame of the points
+  std::uint32_t height = 1;           ///< number of rows
+  std::uint32_t width = 0;            ///< points of a row
+  PointFields fields{};               ///< of a point
+  bool is_bigendian = false;          ///< false: little-endian
+  std::uint32_t point_step = 0;       ///< size of a point [byte]
+  std::uint32_t row_step = 0;         ///< size of a row [byte]
+  std::span<const std::byte> data{};  ///< records
+  bool is_dense = true;               ///< true if all coordinates are finite
+  static constexpr Description ros{"sensor_msgs/msg/PointCloud2",
+                                   "header height width fields is_bigendian point_step row_step data is_dense"};
+};
+
+}  // namespace ros
+
+inline constexpr const char* point_cloud2_type = ros::type_of<ros::PointCloud2>;  ///< name of the message type
+/// Definition of the message type and its parts, in the encoding "ros2msg".
+inline constexpr const char* point_cloud2_definition = ros::definition_of<ros::PointCloud2>;
 
 /// Start of a scan by the clock, which is the stamp of its message, to the nearest nanosecond [ns].
 /// @throws SettingError for a time that ROS does not hold: before 0 s or after 2^31 - 1 s
 [[nodiscard]] inline std::uint64_t stamp_ns(const PointBuffer& scan) {
-  const double clock = scan.settings().start_time, time = clock + scan.scan_start().seconds();
-  require_within("PointSettings::start_time + PointBuffer::scan_start", time, 0, 2'147'483'647, "s");
-  const Tick stamp = Tick::of_seconds(clock) + scan.scan_start();
-  const long long rest = std::llround(stamp.fraction * 1e9);
-  return static_cast<std::uint64_t>(stamp.second * 1'000'000'000 + rest);
+  return ros::stamp_ns(scan.settings().start_time, scan.scan_start(),
+                       "PointSettings::start_time + PointBuffer::scan_start");
 }
 
 namespace detail {
-
-/// Encapsulation header: CDR, little-endian, no options. Source: OMG DDSI-RTPS 2.5, 10, CDR_LE.
-inline constexpr std::array<std::byte, 4> cdr_encapsulation{std::byte{0}, std::byte{1}};
 
 /// Length of the data of a message. @throws SettingError for more than its field holds
 [[nodiscard]] inline std::uint32_t point_cloud2_length(std::size_t bytes) {
@@ -77,42 +81,26 @@ inline constexpr std::array<std::byte, 4> cdr_encapsulation{std::byte{0}, std::b
 
 }  // namespace detail
 
-/// Writes a scan as a serialized sensor_msgs/msg/PointCloud2 into `message`: little-endian CDR
-/// after an encapsulation header, as ROS 2 sends and records it. The scan is one row, stamped by
-/// `stamp_ns`; 64-bit integers become `float64`. Allocates nothing but `message`.
+/// Writes a scan as a serialized sensor_msgs/msg/PointCloud2 into `message`: see `ros::serialize`. The scan is stamped
+/// by `stamp_ns`; it is one row, or the rows of its grid, which is not dense. 64-bit integers become `float64`.
+/// Allocates nothing but `message`.
 /// @throws SettingError for more than 2^32 - 1 bytes of points, and as `stamp_ns`
 inline void serialize_point_cloud2(const PointBuffer& scan, const std::string& frame_id,
                                    std::vector<std::byte>& message) {
   const PointLayout& layout = scan.layout();
-  const std::span<const std::byte> records = scan.records();
-  const std::uint32_t length = detail::point_cloud2_length(records.size());
-  const std::uint64_t stamp = stamp_ns(scan), nanoseconds_per_second = 1'000'000'000;
-  std::size_t head = 64 + frame_id.size();  // at most, up to the data: numbers of 4 bytes are aligned
-  for (const PointField& field : layout.fields) head += 24 + field.name.size();
-
-  message.assign(detail::cdr_encapsulation.begin(), detail::cdr_encapsulation.end());
-  message.reserve(message.size() + head + records.size() + 1);
-  message.resize(message.size() + head);  // the padding of numbers is zero
-  auto* const after = reinterpret_cast<char*>(message.data() + detail::cdr_encapsulation.size());
-  eprosima::fastcdr::FastBuffer buffer(after, head);
-  eprosima::fastcdr::Cdr cdr(buffer);
-  cdr << static_cast<std::int32_t>(stamp / nanoseconds_per_second)
-      << static_cast<std::uint32_t>(stamp % nanoseconds_per_second) << frame_id;
-  cdr << std::uint32_t{1} << static_cast<std::uint32_t>(scan.size());  // height, width
-  cdr << static_cast<std::uint32_t>(layout.fields.size());
-  for (const PointField& field : layout.fields)
-    cdr << field.name << field.offset << static_cast<std::uint8_t>(std::min(field.type, NumberType::float64))
-        << std::uint32_t{1};
-  cdr << false << layout.size << length << length;  // is_bigendian, point_step, row_step, data
-  message.resize(detail::cdr_encapsulation.size() + cdr.getSerializedDataLength());
-  const std::size_t data = message.size();
-  message.insert(message.end(), records.begin(), records.end());
+  const std::uint32_t length = detail::point_cloud2_length(scan.records().size());
+  ros::PointCloud2 cloud{.header = {ros::Time::of(stamp_ns(scan)), frame_id}, .fields = {layout.fields}};
+  cloud.height = std::max(scan.grid().rows, std::uint32_t{1});
+  cloud.width = static_cast<std::uint32_t>(scan.size()) / cloud.height;
+  cloud.point_step = layout.size;
+  cloud.row_step = length / cloud.height;
+  cloud.data = scan.records();
+  cloud.is_dense = scan.grid().rows == 0;  // echoes have finite coordinates
+  ros::serialize(cloud, message);
+  std::byte* const data = message.data() + message.size() - sizeof cloud.is_dense - length;
   for (const PointField& field : layout.fields)  // a message has no 64-bit integers
-    for (std::size_t i = 0; field.type >= NumberType::int64 && i < scan.size(); ++i) {
-      std::byte* const at = message.data() + data + i * layout.size + field.offset;
-      detail::store_number<double>(scan.number(i, field), at);
-    }
-  message.push_back(std::byte{1});  // is_dense: echoes have finite coordinates
+    for (std::size_t i = 0; field.type >= NumberType::int64 && i < scan.size(); ++i)
+      detail::store_number<double>(scan.number(i, field), data + i * layout.size + field.offset);
 }
 
 }  // namespace PULSECAST_NAMESPACE::io

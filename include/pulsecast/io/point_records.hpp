@@ -310,23 +310,49 @@ class PointEncoder {
   Frame frame_{};  // of a scan without distortion
 };
 
+/// Grid of the points of a scan, one place a pulse, row by row; the first echo of a pulse takes its place. A point
+/// without an echo has NaN in each field of floating point, and 0 in integers.
+struct PointGrid {
+  std::uint32_t rows = 0;     ///< number of rows, as of rings; 0: no grid
+  std::uint32_t columns = 0;  ///< number of columns
+  /// Columns a second: the row is the ring, the column counts from the scan's start. 0: pulses fill rows, as of a
+  /// pixel array, from a slot that is a multiple of their number [Hz]
+  double column_rate = 0;
+
+  void validate() const {
+    require_within("PointGrid::rows", rows, 0, 1e6, "");
+    require_within("PointGrid::columns", columns, rows > 0 ? 1 : 0, 1e6, "");
+    require_within("PointGrid::rows * columns", double{1} * rows * columns, 0, 1e9, "");
+    require_within("PointGrid::column_rate", column_rate, 0, 1e9, "Hz");
+  }
+};
+
 /// Point records in memory: a sink that keeps them, and gives them to the writers of files and
 /// messages. Once it has grown to the longest scan, it allocates nothing.
 class PointBuffer {
  public:
-  /// @throws SettingError for a layout or settings out of range
-  explicit PointBuffer(PointLayout layout, PointSettings settings = {})
-      : encoder_(std::move(layout), std::move(settings)) {}
+  /// @throws SettingError for a layout, settings or a grid out of range
+  explicit PointBuffer(PointLayout layout, PointSettings settings = {}, PointGrid grid = {})
+      : encoder_(std::move(layout), std::move(settings)), grid_(validated(grid)) {
+    clear();
+  }
 
-  void operator()(const EchoBatch& batch) { encoder_.encode(batch, records_); }
+  void operator()(const EchoBatch& batch) {
+    if (grid_.rows == 0) return encoder_.encode(batch, records_);
+    for (const Shot& shot : batch.shots)
+      if (shot.echoes > 0) place(batch, shot);
+  }
   [[nodiscard]] static bool reads_empty_shots() noexcept { return false; }  ///< see ChoosesShots
 
   /// Drops all points, and sets the start of the next scan.
   void begin_scan(Tick start) {
-    records_.clear();
+    clear();
     encoder_.begin_scan(start);
   }
 
+  [[nodiscard]] const PointGrid& grid() const noexcept { return grid_; }
+  /// Echoes of all scans without a place in the grid.
+  [[nodiscard]] std::uint64_t echoes_left_out() const noexcept { return left_out_; }
   [[nodiscard]] std::size_t size() const noexcept { return records_.size() / layout().size; }
   /// Records, one after another.
   [[nodiscard]] std::span<const std::byte> records() const noexcept { return records_; }
@@ -340,8 +366,37 @@ class PointBuffer {
   }
 
  private:
+  /// Drops all points; fills a grid with those of misses.
+  void clear() {
+    records_.clear();
+    records_.resize(std::size_t{grid_.rows} * grid_.columns * layout().size);
+    for (const PointField& field : layout().fields)
+      for (std::size_t at = field.offset; at < records_.size(); at += layout().size)
+        detail::visit_number_type(field.type, [&]<class Number>() {
+          detail::store_number<Number>(std::numeric_limits<double>::quiet_NaN(), &records_[at]);
+        });
+  }
+
+  /// Writes the first echo of a shot to its place in the grid.
+  void place(const EchoBatch& batch, const Shot& shot) {
+    const Echo& echo = batch.echoes_of(shot).front();
+    const Tick start = scan_start();
+    const PointView view{shot, echo, settings(), start};
+    double row = 0, column = static_cast<double>(shot.index % size());
+    if (grid_.column_rate > 0) {
+      row = detail::ring_of(view);
+      column = std::floor(detail::scan_time(view) * grid_.column_rate + 1e-6);  // rounded times are of their column
+    }
+    const bool inside = row < grid_.rows && column >= 0 && (column < grid_.columns || grid_.column_rate == 0);
+    left_out_ += shot.echoes - (inside ? 1 : 0);
+    const auto at = static_cast<std::size_t>(row * grid_.columns + column);
+    if (inside) encoder_.store(batch, shot, echo, records_.data() + at * layout().size);
+  }
+
   PointEncoder encoder_;
+  PointGrid grid_;
   std::vector<std::byte> records_;
+  std::uint64_t left_out_ = 0;  // echoes without a place
 };
 static_assert(EchoSink<PointBuffer>);
 

@@ -19,6 +19,16 @@ void for_each_record(const Tick& duration, double interval, const auto& record) 
   record(duration);
 }
 
+/// Poses of a trajectory at ticks, as ground truth for `write_trajectory` and `write_kitti_poses`.
+[[nodiscard]] std::vector<TimedPose> timed_poses(const Trajectory auto& trajectory, std::span<const Tick> ticks) {
+  std::vector<TimedPose> poses;
+  for (const Tick& tick : ticks) {
+    const Pose<frame::Body, frame::World> pose = trajectory.at(tick);
+    poses.push_back({tick.seconds(), pose.position, pose.rotation});
+  }
+  return poses;
+}
+
 /// Writes poses of a platform as text, one a line, with these columns and a blank between them:
 ///
 ///     x y z gpsTime roll pitch yaw
