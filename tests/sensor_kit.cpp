@@ -15,6 +15,7 @@
 
 #include <doctest/doctest.h>
 
+#include <pulsecast/base/scratch_memory.hpp>
 #include <pulsecast/base/thread_pool.hpp>
 #include <pulsecast/deflector/risley_prisms.hpp>
 #include <pulsecast/io/point_records.hpp>
@@ -118,14 +119,25 @@ Log stepped(double steps_per_second, const Workers& workers = {1}) {
   return log;
 }
 
-/// Executor of the user's, without memory.
+/// Executors of a user: as in the cookbook, and one that needs no threads.
 struct ThreadPerTask {
+  ScratchMemory kept{};
   unsigned threads() const { return 3; }
   void for_each(std::size_t count, const IndexTask& task) {
     std::vector<std::jthread> all;
     for (std::size_t i = 0; i < count; ++i) all.emplace_back([&task, i] { task(i); });
   }
+  ScratchMemory& memory() { return kept; }
 };
+struct LastTaskFirst {
+  ScratchMemory kept{};
+  unsigned threads() const { return 3; }
+  void for_each(std::size_t count, const IndexTask& task) {
+    while (count-- > 0) task(count);
+  }
+  ScratchMemory& memory() { return kept; }
+};
+static_assert(MemoryKeepingExecutor<ThreadPerTask> && MemoryKeepingExecutor<LastTaskFirst>);
 
 /// Kit of a robot that jumps between steps, and of a world that changes with it.
 struct JumpingRobot {
@@ -209,11 +221,13 @@ TEST_CASE("the data of a robot that jumps between steps are the same for any exe
   CHECK(one.calls.size() > 180);
   ThreadPool of_one(1), of_two(2), of_three(3);
   ThreadPerTask own;
+  LastTaskFirst alone;
   CHECK((of_jumps({3}).calls == one.calls));
   CHECK((of_jumps(of_one).calls == one.calls));
   CHECK((of_jumps(of_two).calls == one.calls));
   CHECK((of_jumps(of_three).calls == one.calls));
   CHECK((of_jumps(own).calls == one.calls));
+  CHECK((of_jumps(alone).calls == one.calls));
 }
 
 TEST_CASE("points of a scan over several steps are in the sensor's frame of each step, or of the scan's first") {
@@ -241,9 +255,10 @@ TEST_CASE("points of a scan over several steps are in the sensor's frame of each
   }
 }
 
-TEST_CASE("a kit with a pool allocates nothing after its first second") {
-  for (const unsigned threads : {1U, 2U}) {
-    ThreadPool pool(threads);
+TEST_CASE("a kit with a pool, or another executor with memory, allocates nothing after its first second") {
+  ThreadPool of_one(1), of_two(2);
+  LastTaskFirst own;
+  for (const Workers& workers : {Workers(of_one), Workers(of_two), Workers(own)}) {
     JumpingRobot robot;
     SensorKit kit;
     Log unused;
@@ -264,7 +279,7 @@ TEST_CASE("a kit with a pool allocates nothing after its first second") {
     for (int k = 0; k < 240; ++k) {
       if (k == 80) before = support::allocations;
       robot.pose = jump(k % 8);
-      kit.step(Tick::of(static_cast<PulseIndex>(k) + 1, 60), pool);
+      kit.step(Tick::of(static_cast<PulseIndex>(k) + 1, 60), workers);
     }
     CHECK(support::allocations == before);
     CHECK(points > 50'000);

@@ -71,13 +71,10 @@ class MovingScene {
   void closest(const detail::RaySheaf& rays, double wavelength, std::span<Hit> hits) const noexcept
       requires(detail::TakesSingleRays<Shapes>&&...) {
     detail::SheafHits nearest(rays);
-    scene_.search(rays, nearest);
-    for (std::size_t j = 0; j < rays.size; ++j) {
-      search_movers(rays.rays[j], nearest.of[j]);
-      const auto placement_of = [&](std::size_t part) noexcept { return placement(part, rays.rays[j].tick); };
-      scene_.describe(rays.rays[j], nearest.of[j], wavelength, hits.subspan(j, 1), placement_of,
+    search(rays, nearest);
+    for (std::size_t j = 0; j < rays.size; ++j)
+      scene_.describe(rays.rays[j], nearest.of[j], wavelength, hits.subspan(j, 1), placements(rays.rays[j].tick),
                       typename Scene<Shapes...>::AskLaws{});
-    }
   }
 
   void closest(const RayBundle& rays, ClosestHits& hits) const noexcept { search(rays, hits); }
@@ -117,6 +114,10 @@ class MovingScene {
   }
 
  private:
+  template <class Map>
+  friend class WithoutObject;
+  using AnyPart = typename Scene<Shapes...>::AnyPart;
+
   struct Mover {
     std::size_t part;
     Vec3 centre;  ///< centre of its box as placed [m]
@@ -131,25 +132,34 @@ class MovingScene {
   void describe(const Rays& rays, std::span<Hit> hits, const Visitor& visit) const noexcept {
     ClosestHits nearest(rays);
     search(rays, nearest);
-    const auto placement_of = [&](std::size_t part) noexcept { return placement(part, rays.tick); };
-    scene_.describe(rays, nearest, rays.wavelength, hits, placement_of, visit);
+    scene_.describe(rays, nearest, rays.wavelength, hits, placements(rays.tick), visit);
   }
 
-  template <class Rays, class Hits>
-  void search(const Rays& rays, Hits& hits) const noexcept {
-    scene_.search(rays, hits);
-    search_movers(rays, hits);
+  const Scene<Shapes...>& still() const noexcept { return scene_; }
+  auto placements(const Tick& tick) const noexcept {
+    return [this, &tick](std::size_t part) noexcept { return placement(part, tick); };
   }
-  template <class Rays, class Hits>
-  void search_movers(const Rays& rays, Hits& hits) const noexcept {
+
+  template <class Rays, class Hits, class Meets = AnyPart>
+  void search(const Rays& rays, Hits& hits, Meets meets = {}) const noexcept {
+    scene_.search(rays, hits, meets);
+    if constexpr (std::is_same_v<Rays, detail::RaySheaf>)
+      for (std::size_t j = 0; j < rays.size; ++j) search_movers(rays.rays[j], hits.of[j], meets);
+    else
+      search_movers(rays, hits, meets);
+  }
+  template <class Rays, class Hits, class Meets>
+  void search_movers(const Rays& rays, Hits& hits, Meets meets) const noexcept {
     if (movers_.empty()) return;
-    const auto test = [&](PrimitiveIndex i) noexcept {
-      scene_.closest_in(movers_[i].part, moved(movers_[i], rays.tick), rays, hits);
+    const auto test = [&, meets](PrimitiveIndex i) noexcept {
+      const std::size_t part = movers_[i].part;
+      if (meets(parts()[part])) scene_.closest_in(part, moved(movers_[i], rays.tick), rays, hits);
     };
     index_.closest(rays, test, hits);
   }
-  auto searcher() const noexcept {
-    return [this](const SingleRayPacket& ray, auto& hits) noexcept { this->search(ray, hits); };
+  template <class Meets = AnyPart>
+  auto searcher(Meets meets = {}) const noexcept {
+    return [this, meets](const SingleRayPacket& ray, auto& hits) noexcept { this->search(ray, hits, meets); };
   }
 
   static Box bounds_of(const Part& part) noexcept {

@@ -170,9 +170,14 @@ class Scene {
  private:
   template <Geometry... OfMoving>
   friend class MovingScene;
+  template <class Map>
+  friend class WithoutObject;
 
   enum class Motions : std::uint8_t { refused, left_out };
   struct AskLaws {};  ///< in place of a visitor
+  struct AnyPart {    ///< in place of a choice of parts
+    constexpr bool operator()(const Part&) const noexcept { return true; }
+  };
 
   /// Refuses moving parts, or leaves them out of the index.
   Scene(std::vector<Part> parts, Motions motions, const Workers& workers)
@@ -209,7 +214,8 @@ class Scene {
     return boxes;
   }
 
-  auto placements() const noexcept {
+  const Scene& still() const noexcept { return *this; }
+  auto placements(const Tick& = {}) const noexcept {
     return [this](std::size_t part) noexcept -> const Placement& { return parts_[part].placement; };
   }
 
@@ -220,21 +226,25 @@ class Scene {
     return nearest;
   }
 
-  auto searcher() const noexcept {
-    return [this](const SingleRayPacket& ray, auto& hits) noexcept { this->search(ray, hits); };
+  template <class Meets = AnyPart>
+  auto searcher(Meets meets = {}) const noexcept {
+    return [this, meets](const SingleRayPacket& ray, auto& hits) noexcept { this->search(ray, hits, meets); };
   }
-  template <class Rays, class Hits>
-  void search(const Rays& rays, Hits& hits) const noexcept {
+  /// Offers the hits of parts for which `meets(part)` is true.
+  template <class Rays, class Hits, class Meets = AnyPart>
+  void search(const Rays& rays, Hits& hits, Meets meets = {}) const noexcept {
     if constexpr (std::is_same_v<Rays, RayBundle> && (detail::Intersects<Shapes, SingleRayPacket, ClosestHit> && ...))
-      if (rays.size == 1) return detail::closest_one_by_one(rays, hits, searcher());  // cheaper in frames of parts
+      if (rays.size == 1) return detail::closest_one_by_one(rays, hits, searcher(meets));  // cheaper in frames of parts
     if constexpr (std::is_same_v<Rays, detail::RaySheaf>)
       if (!rays.together) {
-        for (std::size_t j = 0; j < rays.size; ++j) search(rays.rays[j], hits.of[j]);
+        for (std::size_t j = 0; j < rays.size; ++j) search(rays.rays[j], hits.of[j], meets);
         return;
       }
-    const auto test = [&](std::span<const PrimitiveIndex> found) noexcept {
-      for (const PrimitiveIndex p : found) closest_in(p, parts_[p].placement, rays, hits);
+    const auto test = [&, meets](std::span<const PrimitiveIndex> found) noexcept {
+      for (const PrimitiveIndex p : found)
+        if (meets(parts_[p])) closest_in(p, parts_[p].placement, rays, hits);
     };
+    if (single_part_ && !meets(parts_[0])) return;
     if (single_untransformed_part_)
       closest_in(0, rays, hits);
     else if (single_part_)
