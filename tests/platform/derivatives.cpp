@@ -31,7 +31,8 @@ struct Circle {
 struct Rocking {
   BodyPose at(Tick t) const noexcept {
     const double s = t.seconds();
-    return {rotation_about(axis::forward, 0.4 * std::sin(2 * s)) * rotation_about(axis::right, 0.3 * std::cos(3 * s)), {}};
+    return {rotation_about(axis::forward, 0.4 * std::sin(2 * s)) * rotation_about(axis::right, 0.3 * std::cos(3 * s)),
+            {}};
   }
 };
 
