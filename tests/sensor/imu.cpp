@@ -23,7 +23,6 @@
 #include "support/laws.hpp"
 #include "support/refused_field.hpp"
 #include "support/relative.hpp"
-#include "support/sanitized.hpp"
 
 using namespace pulsecast;
 using namespace pulsecast::literals;
@@ -84,6 +83,7 @@ struct Clothoid {
 
 /// The same with derivatives.
 struct KnownClothoid : Clothoid {
+  BodyPose at(Tick t) const noexcept { return Clothoid::at(t); }
   Derivatives derivatives(Tick t) const noexcept {
     const double s = t.seconds();
     const Vec3 v = velocity(s);
