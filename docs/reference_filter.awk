@@ -19,7 +19,7 @@ BEGIN {
   of["closest_hit"] = of["occluded"] = "SceneQueries"; of["misses_cone"] = "MissesCones"; of["visit_materials"] = "VisitsMaterials"
   of["workspace"] = of["detect"] = "Detector"; of["width"] = "EchoWidth"; of["emitters"] = "PulseSource"
   of["reflections"] = of["trace"] = "Transport"; of["measured"] = "MeasuresBeam"
-  of["poses"] = "MovesInLanes"; of["pulse_lanes"] = "MakesLanes"; of["slot_from"] = "FindsSlots"; of["next_pulse"] = "SkipsBlocked"
+  of["poses"] = "MovesInLanes"; of["pulse_lanes"] = "MakesLanes"; of["derivatives"] = "Differentiable"; of["slot_from"] = "FindsSlots"; of["next_pulse"] = "SkipsBlocked"
   of["backscatter"] = of["scattered_share"] = "ScatteringLaw"; of["scattered"] = "ScattersBetween"; of["sample"] = "SamplesDirections"
   of["returned_share"] = of["returned_half_angle"] = "Retroreflects"
   of["draw_for_leg"] = "DrawsByLeg"; of["visit_errors"] = "StatesErrors"; of["judges_surfaces"] = "JudgesSurfaces"; of["power"] = "PulseForm"; of["min_share"] = "TruncatedWidthMeasure"

@@ -59,6 +59,9 @@ concept LanesOfItsPulses = std::same_as<decltype(declared_in(&S::pulse)), declty
 /// Motion whose `poses` goes with its `at`.
 template <class M>
 concept LanesOfItsPoses = std::same_as<decltype(declared_in(&M::at)), decltype(declared_in(&M::poses))>;
+/// Motion whose `derivatives` go with its `at`.
+template <class M>
+concept DerivativesOfItsPoses = std::same_as<decltype(declared_in(&M::at)), decltype(declared_in(&M::derivatives))>;
 /// `PoseLanes` of a motion.
 template <class M>
 using PosesOf = typename InLanes<decltype(std::declval<const M&>().at(Tick{}))>::type;

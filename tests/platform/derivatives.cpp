@@ -7,6 +7,7 @@
 #include <doctest/doctest.h>
 
 #include <pulsecast/base/units.hpp>
+#include <pulsecast/platform/straight_line.hpp>
 #include <pulsecast/platform/waypoints.hpp>
 
 #include "support/generators.hpp"
@@ -31,7 +32,8 @@ struct Circle {
 struct Rocking {
   BodyPose at(Tick t) const noexcept {
     const double s = t.seconds();
-    return {rotation_about(axis::forward, 0.4 * std::sin(2 * s)) * rotation_about(axis::right, 0.3 * std::cos(3 * s)), {}};
+    return {rotation_about(axis::forward, 0.4 * std::sin(2 * s)) * rotation_about(axis::right, 0.3 * std::cos(3 * s)),
+            {}};
   }
 };
 
@@ -85,6 +87,15 @@ TEST_CASE("what is differentiated by its poses is what is known in closed form")
     CHECK(length(a.angular_rate - b.angular_rate) < 1e-10);
     CHECK(length(a.angular_acceleration - b.angular_acceleration) < 1e-8);
   }
+}
+
+TEST_CASE("an heir that replaces the poses of a path has derivatives of its own") {
+  struct Faster : StraightLine {
+    BodyPose at(Tick t) const noexcept { return StraightLine::at(t + t); }
+  };
+  const Faster path{{.to = {0, 1000, 0}, .speed = 10}};
+  CHECK(length(derivatives_of(path, {3, 0}).velocity - Vec3{0, 20, 0}) < 1e-9);
+  CHECK(derivatives_of(StraightLine{path}, {3, 0}).velocity == Vec3{0, 10, 0});
 }
 
 TEST_CASE("an instrument on a lever arm moves as its own poses do") {

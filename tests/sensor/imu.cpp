@@ -23,7 +23,6 @@
 #include "support/laws.hpp"
 #include "support/refused_field.hpp"
 #include "support/relative.hpp"
-#include "support/sanitized.hpp"
 
 using namespace pulsecast;
 using namespace pulsecast::literals;
@@ -58,7 +57,8 @@ struct PosesOnly {
 
 /// Gauss-Legendre quadrature of a vector, 5 points, in n panels.
 Vec3 integral(double from, double to, int n, const auto& f) {
-  constexpr std::array<double, 5> x{-0.9061798459386640, -0.5384693101056831, 0, 0.5384693101056831, 0.9061798459386640};
+  constexpr std::array<double, 5> x{-0.9061798459386640, -0.5384693101056831, 0, 0.5384693101056831,
+                                    0.9061798459386640};
   constexpr std::array<double, 5> w{0.2369268850561891, 0.4786286704993665, 0.5688888888888889, 0.4786286704993665,
                                     0.2369268850561891};
   Vec3 sum{};
@@ -68,7 +68,8 @@ Vec3 integral(double from, double to, int n, const auto& f) {
   return sum;
 }
 
-/// Clothoid to the left from north, at constant speed: its curvature grows with the way. Positions are Fresnel's integrals.
+/// Clothoid to the left from north, at constant speed: its curvature grows with the way. Positions are Fresnel's
+/// integrals.
 struct Clothoid {
   double speed = 6, growth = 0.01;
   double heading(double s) const noexcept { return 0.5 * growth * speed * speed * s * s; }
@@ -82,6 +83,7 @@ struct Clothoid {
 
 /// The same with derivatives.
 struct KnownClothoid : Clothoid {
+  BodyPose at(Tick t) const noexcept { return Clothoid::at(t); }
   Derivatives derivatives(Tick t) const noexcept {
     const double s = t.seconds();
     const Vec3 v = velocity(s);
@@ -102,7 +104,8 @@ struct Tumbling {
 struct Slalom {
   BodyPose at(Tick t) const noexcept {
     const double s = t.seconds();
-    return {level(0.6 * std::sin(0.9 * s)), {5 * std::sin(0.5 * s), 4 * s + std::cos(0.8 * s), 0.3 * std::sin(0.4 * s)}};
+    return {level(0.6 * std::sin(0.9 * s)),
+            {5 * std::sin(0.5 * s), 4 * s + std::cos(0.8 * s), 0.3 * std::sin(0.4 * s)}};
   }
 };
 
@@ -247,7 +250,9 @@ TEST_CASE("a corner is an impulse in the increment of its interval, and in no ra
 
 TEST_CASE("a lever arm feels centripetal and Euler acceleration") {
   struct Swinging {
-    BodyPose at(Tick t) const noexcept { return {rotation_about(axis::up, 0.3 * std::sin(2 * t.seconds())), {5, 6, 7}}; }
+    BodyPose at(Tick t) const noexcept {
+      return {rotation_about(axis::up, 0.3 * std::sin(2 * t.seconds())), {5, 6, 7}};
+    }
   };
   const Imu imu{Swinging{}, Mount{.lever_arm = {0, 2, 0}}};
   for (const PulseIndex i : {PulseIndex{1}, PulseIndex{333}}) {
@@ -305,7 +310,8 @@ TEST_CASE("increments, integrated over a minute, are the path to 1 mm and 1e-6 r
     CHECK(errors.y < 1e-6);
   };
   check(errors_of_increments(Imu{Tumbling{}, tilted}));
-  // a lever arm adds a jump of the velocity to each of the angular rate, which the trapezoidal rule misses by half an interval
+  // a lever arm adds a jump of the velocity to each of the angular rate, which the trapezoidal rule misses by half an
+  // interval
   for (const Mount& mount : {Mount{}, Mount{.boresight = tilted.boresight}}) {
     const std::vector<Vec2> way{{0, 0}, {0, 60}, {40, 90}, {150, 90}, {150, 200}, {300, 300}, {300, 900}};
     const auto drive = plan_ground_vehicle(way, hills, {.speed = 12});
@@ -351,9 +357,12 @@ TEST_CASE("rates of a path of continuous acceleration, integrated over a minute,
 namespace {
 
 /// Angles of three gyroscopes and velocities of three accelerometers, integrated from increments at rest.
-std::array<std::vector<double>, 6> integrated(const InertialErrors& errors, PulseIndex n, double rate, std::uint64_t seed) {
-  const Imu imu{Tripod{}, Mount{},
-                {.sample_rate = rate, .gyroscope = errors, .accelerometer = errors, .earth = {.gravity = 0}, .seed = seed}};
+std::array<std::vector<double>, 6> integrated(const InertialErrors& errors, PulseIndex n, double rate,
+                                              std::uint64_t seed) {
+  const Imu imu{
+      Tripod{},
+      Mount{},
+      {.sample_rate = rate, .gyroscope = errors, .accelerometer = errors, .earth = {.gravity = 0}, .seed = seed}};
   std::array<std::vector<double>, 6> sums;
   for (auto& sum : sums) sum.assign(n + 1, 0);
   for (PulseIndex i = 0; i < n; ++i) {
@@ -453,7 +462,8 @@ TEST_CASE("samples are pure in their number, and allocate nothing") {
   const auto copy = imu;
   const auto allocations = support::allocations.load();
   bool alike = true;
-  for (PulseIndex i = 300; i-- > 0;) alike = alike && same(imu.sample(i), forwards[i]) && same(copy.sample(i), forwards[i]);
+  for (PulseIndex i = 300; i-- > 0;)
+    alike = alike && same(imu.sample(i), forwards[i]) && same(copy.sample(i), forwards[i]);
   CHECK(alike);
   CHECK(support::allocations.load() == allocations);
   static_assert(noexcept(imu.sample(0)));
@@ -516,8 +526,6 @@ TEST_CASE("rounded increments keep their sums to half a step") {
     REQUIRE(is_within(velocity, 0.5001 * velocity_step));
     REQUIRE(s.angular_rate == exact.angular_rate);
   }
-  const ImuSample exact = imu.sample(9);
-  CHECK(same(IncrementQuantizer(0, 0)(exact), exact));
 }
 
 TEST_CASE("sensors of three grades have the noise of their data sheets") {
@@ -542,7 +550,8 @@ TEST_CASE("settings out of range are refused by name") {
   CHECK(refused([](auto&) {}) == "");
   CHECK(refused([&](auto& s) { s.sample_rate = nan; }) == "ImuSettings::sample_rate");
   CHECK(refused([](auto& s) { s.sample_rate = 0; }) == "ImuSettings::sample_rate");
-  const std::string gyro = "ImuSettings::gyroscope: InertialErrors::", acc = "ImuSettings::accelerometer: InertialErrors::";
+  const std::string gyro = "ImuSettings::gyroscope: InertialErrors::",
+                    acc = "ImuSettings::accelerometer: InertialErrors::";
   CHECK(refused([&](auto& s) { s.gyroscope.bias.y = nan; }) == gyro + "bias (length)");
   CHECK(refused([](auto& s) { s.accelerometer.bias_deviation = -1; }) == acc + "bias_deviation");
   CHECK(refused([&](auto& s) { s.gyroscope.random_walk = nan; }) == gyro + "random_walk");
@@ -557,11 +566,13 @@ TEST_CASE("settings out of range are refused by name") {
   CHECK(refused([](auto& s) { s.earth.latitude = 48; }) == "Earth::latitude");
   CHECK(support::refused_field([] { static_cast<void>(wgs84_earth(48)); }) == "Earth::latitude");
   CHECK(support::refused_field([] { static_cast<void>(wgs84_earth(0, 1e6)); }) == "wgs84_earth (height)");
-  CHECK(support::refused_field([] { static_cast<void>(IncrementQuantizer(-1, 0)); }) == "IncrementQuantizer (angle_step)");
-  CHECK(support::refused_field([&] { static_cast<void>(IncrementQuantizer(0, nan)); }) ==
+  CHECK(support::refused_field([] { static_cast<void>(IncrementQuantizer(-1, 0)); }) ==
+        "IncrementQuantizer (angle_step)");
+  CHECK(support::refused_field([&] { static_cast<void>(IncrementQuantizer(1, nan)); }) ==
         "IncrementQuantizer (velocity_step)");
   const Mount far{.lever_arm = {nan, 0, 0}};
   CHECK(support::refused_field([&] { static_cast<void>(Imu{Tripod{}, far}); }) == "Mount::lever_arm (length)");
-  CHECK(support::refused_field([] { static_cast<void>(Imu{StraightLine{.speed = -1}, Mount{}}); }) ==
-        "StraightLine::speed");
+  CHECK(support::refused_field([] {
+          static_cast<void>(Imu{StraightLine{.speed = -1}, Mount{}});
+        }) == "StraightLine::speed");
 }

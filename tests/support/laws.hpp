@@ -181,8 +181,8 @@ template <class M>
   return {};
 }
 
-/// Derivatives are pure, and those of the poses from a tick on, to a share of them [per unit]: by differences over 1/4096 s
-/// and over half of it, where these agree; elsewhere a motion jumps within them. Most ticks must be checked.
+/// Derivatives are pure, and those of the poses from a tick on, to a share of them [per unit]: by differences over
+/// 1/4096 s and over half of it, where these agree; elsewhere a motion jumps within them. Most ticks must be checked.
 template <Differentiable M>
 [[nodiscard]] std::string derivative_laws(const M& motion, std::span<const Tick> ticks, double share = 1e-5) {
   if (auto broken =
@@ -207,7 +207,8 @@ template <Differentiable M>
     const auto moved = [&](Tick at) { return motion.at(at).position - now.position; };
     const auto turned = [&](Tick at) { return rotation_vector(conjugate(now.rotation) * motion.at(at).rotation); };
     if (differs(stated.velocity, moved)) return detail::sentence("the velocity differs at ", t.seconds(), " s");
-    if (differs(stated.angular_rate, turned)) return detail::sentence("the angular rate differs at ", t.seconds(), " s");
+    if (differs(stated.angular_rate, turned))
+      return detail::sentence("the angular rate differs at ", t.seconds(), " s");
     if (differs(stated.acceleration, [&](Tick at) { return motion.derivatives(at).velocity; }))
       return detail::sentence("the acceleration differs at ", t.seconds(), " s");
     if (differs(stated.angular_acceleration, [&](Tick at) { return motion.derivatives(at).angular_rate; }))

@@ -93,7 +93,7 @@ inline const Rotation no_rotation = detail::rotation_wxyz(1, 0, 0, 0);  ///< ide
 /// Rotation of a rotation vector [rad]. Inverse of `rotation_vector`.
 [[nodiscard]] inline Rotation rotation_by(const Vec3& vector) noexcept {
   const double angle = length(vector);
-  return angle > 0 ? glm::angleAxis(angle, vector / angle) : no_rotation;
+  return angle > 0 ? rotation_about(vector, angle) : no_rotation;
 }
 
 /// Rotation matrix: columns are the rotated x, y, z. Cheaper than a quaternion for several vectors.

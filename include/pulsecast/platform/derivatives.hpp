@@ -14,7 +14,7 @@ namespace PULSECAST_NAMESPACE {
 template <Trajectory Path>
 [[nodiscard]] Derivatives derivatives_of(const Path& path, Tick t) noexcept {
   static_assert(detail::members_checked<Path, tag::Differentiable>);
-  if constexpr (Differentiable<Path>) {
+  if constexpr (Differentiable<Path> && detail::DerivativesOfItsPoses<Path>) {
     return path.derivatives(t);
   } else {
     constexpr double h = 1.0 / 256;

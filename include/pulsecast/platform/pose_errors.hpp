@@ -75,7 +75,7 @@ class WithPoseErrors {
   /// @throws SettingError for settings out of range
   WithPoseErrors(Platform<Path, Source> truth, PoseErrors errors)
       : truth_(std::move(truth)), errors_(validated(errors)) {
-    calibration_ = {errors_.boresight_error * turned_by(drawn_once(errors_.boresight_deviation, 0)),
+    calibration_ = {errors_.boresight_error * rotation_by(drawn_once(errors_.boresight_deviation, 0)),
                     errors_.lever_arm_error + drawn_once(errors_.lever_arm_deviation, 1)};
     latency_ = drawn_once(errors_.latency_deviation, 2).x;
     draw();
@@ -101,7 +101,7 @@ class WithPoseErrors {
     const Drift drift = drift_at(t);
     const Vec3 moved = white_noise(t, Purpose::position_noise, errors_.position_noise) + drift.position;
     const Vec3 turned = white_noise(t, Purpose::attitude_noise, errors_.attitude_noise) + drift.attitude;
-    return world_from_body * Pose<frame::Body, frame::Body>{turned_by(turned), moved};
+    return world_from_body * Pose<frame::Body, frame::Body>{rotation_by(turned), moved};
   }
 
   [[nodiscard]] std::optional<Pulse<frame::World>> pulse(PulseIndex i) const noexcept { return pulse_lanes(i, 1)[0]; }
@@ -144,10 +144,6 @@ class WithPoseErrors {
     Vec3 position{}, attitude{};
   };
 
-  static Rotation turned_by(const Vec3& angles) noexcept {
-    const double angle = length(angles);
-    return angle > 0 ? rotation_about(angles, angle) : no_rotation;
-  }
   static Tick later(Tick t, double seconds) noexcept { return seconds == 0 ? t : t + Tick::of_seconds(seconds); }
 
   /// Errors in the frame of the body, but for those of latency and jitter.

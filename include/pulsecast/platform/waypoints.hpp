@@ -58,9 +58,10 @@ class Waypoints {
     Derivatives d{.velocity = path / interval,
                   .angular_rate = rotation_vector(conjugate(a.rotation) * b.rotation) / interval};
     if (velocities_.empty()) return d;
-    const auto [leaving, square, cube] = cubic_between(path, interval, about);
-    d.velocity = (leaving + s * (2.0 * square + s * (3.0 * cube))) / interval;
-    d.acceleration = (2.0 * square + (6.0 * s) * cube) / (interval * interval);
+    const Vec3 leaving = interval * velocities_[about.before], arriving = interval * velocities_[about.behind];
+    const Vec3 square = 3.0 * path - 2.0 * leaving - arriving, cube = leaving + arriving - 2.0 * path;  // as below
+    d.velocity = (leaving + s * (2.0 * square + 3.0 * s * cube)) / interval;
+    d.acceleration = (2.0 * square + 6.0 * s * cube) / (interval * interval);
     return d;
   }
 
@@ -98,19 +99,10 @@ class Waypoints {
       poses.position = poses.position + s * Vec3Lanes(path);
       return;
     }
-    const Cubic way = cubic_between(path, interval, about);
-    poses.position =
-        poses.position + s * (Vec3Lanes(way.leaving) + s * (Vec3Lanes(way.square) + s * Vec3Lanes(way.cube)));
-  }
-
-  /// Way from a waypoint to the next, in powers of the share of time.
-  struct Cubic {
-    Vec3 leaving, square, cube;
-  };
-  /// Source: cubic Hermite polynomial.
-  [[nodiscard]] Cubic cubic_between(const Vec3& path, double interval, const detail::Neighbours& about) const noexcept {
+    // source: cubic Hermite polynomial in powers of s
     const Vec3 leaving = interval * velocities_[about.before], arriving = interval * velocities_[about.behind];
-    return {leaving, 3.0 * path - 2.0 * leaving - arriving, leaving + arriving - 2.0 * path};
+    const Vec3Lanes square(3.0 * path - 2.0 * leaving - arriving), cube(leaving + arriving - 2.0 * path);
+    poses.position = poses.position + s * (Vec3Lanes(leaving) + s * (square + s * cube));
   }
 
   /// Rotations between two, at a constant rate by the smaller angle. Source: Shoemake 1985.

@@ -3,7 +3,6 @@
 #ifndef PULSECAST_SENSOR_IMU_HPP
 #define PULSECAST_SENSOR_IMU_HPP
 
-#include <pulsecast/base/units.hpp>
 #include <pulsecast/platform/derivatives.hpp>
 
 namespace PULSECAST_NAMESPACE {
@@ -63,7 +62,7 @@ struct InertialErrors {
   Vec3 bias{};                  ///< constant error [x/s]
   double bias_deviation = 0;    ///< standard deviation of a further one, drawn once an axis [x/s]
   double random_walk = 0;       ///< N, of angle or velocity: white noise, N / sqrt(T) [x/s^0.5]
-  double bias_instability = 0;  ///< B, flicker noise: 0.664 B, the floor of the deviation [x/s]
+  double bias_instability = 0;  ///< B, flicker noise: 0.664 B, the floor; from the start on some 2.6 B [x/s]
   double rate_random_walk = 0;  ///< K: K sqrt(T / 3) [x/s^1.5]
   Matrix3 gain{1};              ///< from true to measured rates: scale factors, and misalignment beside the diagonal
   double range = detail::infinity;  ///< largest rate either way; more is cut off, in increments, too [x/s]
@@ -75,7 +74,7 @@ struct InertialErrors {
     require_not_negative("InertialErrors::random_walk", random_walk, "");
     require_not_negative("InertialErrors::bias_instability", bias_instability, "");
     require_not_negative("InertialErrors::rate_random_walk", rate_random_walk, "");
-    for (int k = 0; k < 3; ++k) require_within("InertialErrors::gain (column)", length(gain[k]), 0, 1e3, "");
+    for (int k = 0; k < 3; ++k) require_finite("InertialErrors::gain (column)", length(gain[k]), "");
     if (!(range > 0)) throw_setting_error("InertialErrors::range", range, "", "greater than 0");
     require_not_negative("InertialErrors::resolution", resolution, "");
   }
@@ -97,41 +96,36 @@ struct ImuSettings {
   }
 };
 
-/// Data sheets of three grades. Bias instability is there the lowest point of the Allan deviation, 0.664 B. What a
-/// sheet gives as a tolerance only, such as the bias at the start of the first two, is left out, and so is what it
-/// lacks.
-///
-/// Consumer. No bias instability. Source: InvenSense MPU-6000/MPU-6050 product specification, rev. 3.4, sec. 6.1, 6.2,
-/// for 2000 deg/s and 16 g: 0.005 deg/s/sqrt(Hz), 16.4 LSB/(deg/s); 400 ug/sqrt(Hz), 2048 LSB/g.
+namespace detail {
+/// Errors by data sheet, where bias instability is the lowest point of the Allan deviation, 0.664 B.
+[[nodiscard]] inline InertialErrors errors_on_sheet(double random_walk, double lowest, double range, double step = 0) {
+  return {.random_walk = random_walk, .bias_instability = lowest / 0.664, .range = range, .resolution = step};
+}
+}  // namespace detail
+
+/// Consumer grade; its sheet has no bias instability, and biases as tolerances only. Source: InvenSense
+/// MPU-6000/MPU-6050 product specification, rev. 3.4, sec. 6.1, 6.2, for 2000 deg/s and 16 g.
 [[nodiscard]] inline ImuSettings mpu_6050(double sample_rate = 400) {
+  constexpr double g = standard_gravity;
   return {.sample_rate = sample_rate,
-          .gyroscope = {.random_walk = radians(0.005), .range = radians(2000), .resolution = radians(1 / 16.4)},
-          .accelerometer = {.random_walk = 400e-6 * standard_gravity,
-                            .range = 16 * standard_gravity,
-                            .resolution = standard_gravity / 2048}};
+          .gyroscope = detail::errors_on_sheet(radians(0.005), 0, radians(2000), radians(1 / 16.4)),
+          .accelerometer = detail::errors_on_sheet(400e-6 * g, 0, 16 * g, g / 2048)};
 }
-/// Industrial. Source: Xsens MTi 1-series by Transactions on Aerospace Research 2023, doi 10.2478/tar-2023-0022:
-/// 0.007 deg/s/sqrt(Hz), 10 deg/h, 2000 deg/s; 120 ug/sqrt(Hz), 0.03 mg, 16 g.
+/// Industrial grade. Source: Xsens MTi 1-series, as in Transactions on Aerospace Research 2023, doi
+/// 10.2478/tar-2023-0022: 0.007 deg/s/sqrt(Hz), 10 deg/h, 2000 deg/s; 120 ug/sqrt(Hz), 0.03 mg, 16 g.
 [[nodiscard]] inline ImuSettings mti_1(double sample_rate = 400) {
+  constexpr double g = standard_gravity;
   return {.sample_rate = sample_rate,
-          .gyroscope = {.random_walk = radians(0.007),
-                        .bias_instability = radians(10.0 / 3600) / 0.664,
-                        .range = radians(2000)},
-          .accelerometer = {.random_walk = 120e-6 * standard_gravity,
-                            .bias_instability = 0.03e-3 * standard_gravity / 0.664,
-                            .range = 16 * standard_gravity}};
+          .gyroscope = detail::errors_on_sheet(radians(0.007), radians(10.0 / 3600), radians(2000)),
+          .accelerometer = detail::errors_on_sheet(120e-6 * g, 0.03e-3 * g, 16 * g)};
 }
-/// Tactical. Source: Safran (Sensonor) STIM300, data sheet TS1524, for 10 g: 0.15 deg/sqrt(h), 0.5 deg/h, 400 deg/s;
-/// 0.06 m/s/sqrt(h), 0.05 mg, repeatable to 0.75 mg.
+/// Tactical grade. Source: Safran (Sensonor) STIM300, data sheet TS1524, for 10 g: 0.15 deg/sqrt(h), 0.5 deg/h,
+/// 400 deg/s; 0.06 m/s/sqrt(h), 0.05 mg.
 [[nodiscard]] inline ImuSettings stim_300(double sample_rate = 400) {
+  constexpr double g = standard_gravity;
   return {.sample_rate = sample_rate,
-          .gyroscope = {.random_walk = radians(0.15) / 60,
-                        .bias_instability = radians(0.5 / 3600) / 0.664,
-                        .range = radians(400)},
-          .accelerometer = {.bias_deviation = 0.75e-3 * standard_gravity,
-                            .random_walk = 0.06 / 60,
-                            .bias_instability = 0.05e-3 * standard_gravity / 0.664,
-                            .range = 10 * standard_gravity}};
+          .gyroscope = detail::errors_on_sheet(radians(0.15) / 60, radians(0.5 / 3600), radians(400)),
+          .accelerometer = detail::errors_on_sheet(0.06 / 60, 0.05e-3 * g, 10 * g)};
 }
 
 namespace detail {
@@ -140,32 +134,27 @@ namespace detail {
 /// Flicker noise is flat within 1 % of the Allan deviation from one sample to 2^27.
 class InertialNoise {
  public:
-  InertialNoise(const InertialErrors& errors, double interval, std::uint64_t seed, std::uint32_t channel)
-      : key_{.seed = seed, .purpose = Purpose::inertial_noise, .part = channel},
-        bias_(errors.bias_deviation > 0 ? errors.bias_deviation * draw(0, bias_draw) : 0),
+  InertialNoise(const InertialErrors& errors, double interval, std::uint64_t seed, std::uint32_t axis)
+      : seed_(seed),
+        axis_(axis),
+        bias_(errors.bias_deviation * draw(0, bias_draw)),
         walk_(errors.rate_random_walk * std::sqrt(interval)),
         // floor of the Allan variance: 2 ln(2) / pi B^2; that of the processes of unit variance below: 0.66571
         flicker_(errors.bias_instability * std::sqrt(2 * std::numbers::ln2 / pi / 0.66571)),
-        // and what both have within an interval: a Brownian bridge has a mean of variance 1/12
+        // and what both have within an interval: the mean of a Brownian bridge has the variance 1/12
         white_(std::sqrt(errors.random_walk * errors.random_walk / interval + walk_ * walk_ / 12 +
                          0.442 * flicker_ * flicker_)) {}
 
   [[nodiscard]] double mean(PulseIndex i) const noexcept {
-    double sum = bias_;
-    if (white_ > 0) sum += white_ * draw(i, white_draw);
-    if (flicker_ > 0) sum += flicker_ * flicker(i);
-    if (walk_ > 0) sum += walk_ * walk(i);
-    return sum;
+    return bias_ + (white_ > 0 ? white_ * draw(i, white_draw) : 0) + (flicker_ > 0 ? flicker_ * flicker(i) : 0) +
+           (walk_ > 0 ? walk_ * walk(i) : 0);
   }
 
  private:
   static constexpr std::uint32_t white_draw = 0, bias_draw = 1, flicker_draw = 64, block_draw = 128, bridge_draw = 192;
 
   [[nodiscard]] double draw(PulseIndex number, std::uint32_t what) const noexcept {
-    RandomKey key = key_;
-    key.pulse = number;
-    key.subray = what;
-    return normal(key);
+    return normal({seed_, number, what, Purpose::inertial_noise, axis_});
   }
 
   /// Flicker noise as a sum of processes, each linear between independent draws every 2^level samples, out of step with
@@ -173,37 +162,39 @@ class InertialNoise {
   [[nodiscard]] double flicker(PulseIndex i) const noexcept {
     double sum = 0;
     for (std::uint32_t level = 1; level < 30; level += 2) {
-      const PulseIndex length = PulseIndex{1} << level, place = i + (PulseIndex{0x9E3779B97F4A7C15} >> (64 - level));
-      const double share = (static_cast<double>(place & (length - 1)) + 0.5) / static_cast<double>(length);
-      const double before = draw(place >> level, flicker_draw + level);
-      const double behind = draw((place >> level) + 1, flicker_draw + level);
-      sum += (level == 1 ? std::numbers::sqrt2 * 0.7382 : 1.0) * std::lerp(before, behind, share);
+      const PulseIndex place = i + (0x9E3779B97F4A7C15 >> (64 - level)), before = place >> level;
+      const double share = std::ldexp(static_cast<double>(place - (before << level)) + 0.5, -static_cast<int>(level));
+      const double here = std::lerp(draw(before, flicker_draw + level), draw(before + 1, flicker_draw + level), share);
+      sum += level == 1 ? 1.044 * here : here;
     }
     return sum;
   }
 
   /// Brownian motion of unit variance a sample in the middle of an interval, as if linear there: independent blocks
-  /// that double in length, and in each Levy's construction by midpoints. Source: Levy 1948; Karatzas & Shreve 1991,
-  /// sec. 2.3.
+  /// that double in length, and in the last Levy's construction by midpoints. Source: Karatzas & Shreve 1991, sec. 2.3.
   [[nodiscard]] double walk(PulseIndex i) const noexcept {
-    const auto block = static_cast<std::uint32_t>(std::bit_width(i));  // [2^(block-1), 2^block), or [0, 1)
+    const auto last = static_cast<std::uint32_t>(std::bit_width(i));  // of blocks [0, 1), [1, 2), [2, 4), [4, 8)
     double sum = 0;
-    for (std::uint32_t k = 0; k <= block; ++k) {
-      const PulseIndex start = k > 0 ? PulseIndex{1} << (k - 1) : 0, length = k > 0 ? start : 1;
-      const double whole = static_cast<double>(length), share = (static_cast<double>(i - start) + 0.5) / whole;
-      sum += std::sqrt(whole) * draw(k, block_draw) * (k < block ? 1 : share);
-    }
-    for (std::uint32_t level = 1; level < block; ++level) {
-      const double whole = std::ldexp(1.0, static_cast<int>(level));
-      const double share = (static_cast<double>(i & ((PulseIndex{1} << level) - 1)) + 0.5) / whole;
-      sum += 0.5 * std::sqrt(whole) * draw(i >> level, bridge_draw + level) * (1 - std::fabs(2 * share - 1));
+    for (std::uint32_t k = 0; k <= last; ++k) {
+      const PulseIndex start = k > 0 ? PulseIndex{1} << (k - 1) : 0;
+      const double whole = k > 1 ? static_cast<double>(start) : 1;
+      sum += std::sqrt(whole) * draw(k, block_draw) * (k < last ? 1 : (static_cast<double>(i - start) + 0.5) / whole);
+      if (k < 2) continue;
+      const PulseIndex before = i >> (k - 1);
+      const double share = (static_cast<double>(i - (before << (k - 1))) + 0.5) / whole;
+      sum += 0.5 * std::sqrt(whole) * draw(before, bridge_draw + k) * (1 - std::fabs(2 * share - 1));
     }
     return sum;
   }
 
-  RandomKey key_;
+  std::uint64_t seed_;
+  std::uint32_t axis_;
   double bias_, walk_, flicker_, white_;
 };
+
+[[nodiscard]] inline Vec3 rounded_to(double step, const Vec3& v) noexcept {
+  return step * Vec3{std::round(v.x / step), std::round(v.y / step), std::round(v.z / step)};
+}
 
 }  // namespace detail
 
@@ -287,8 +278,7 @@ class Imu {
     const auto cut = [&](const Vec3& true_rate) { return max(-most, min(most, errors.gain * true_rate + error)); };
     increment = interval * cut(increment / interval);
     rate = cut(rate);
-    if (errors.resolution > 0)
-      for (int k = 0; k < 3; ++k) rate[k] = errors.resolution * std::round(rate[k] / errors.resolution);
+    if (errors.resolution > 0) rate = detail::rounded_to(errors.resolution, rate);
   }
 
   Path path_;
@@ -301,11 +291,12 @@ class Imu {
 /// increments are right to half a step. It takes samples in order; `Imu` itself, pure in the number, has no rest.
 class IncrementQuantizer {
  public:
-  /// Steps of angles [rad] and velocities [m/s]; 0 for none. Throws a `SettingError`.
+  /// Steps of angles [rad] and velocities [m/s], as fine as they may be. Throws a `SettingError`.
   IncrementQuantizer(double angle_step, double velocity_step) : angle_step_(angle_step), velocity_step_(velocity_step) {
-    require_not_negative("IncrementQuantizer (angle_step)", angle_step, "rad");
-    require_not_negative("IncrementQuantizer (velocity_step)", velocity_step, "m/s");
+    require_positive("IncrementQuantizer (angle_step)", angle_step, "rad");
+    require_positive("IncrementQuantizer (velocity_step)", velocity_step, "m/s");
   }
+
   [[nodiscard]] ImuSample operator()(ImuSample sample) noexcept {
     quantize(sample.angle_increment, angle_rest_, angle_step_);
     quantize(sample.velocity_increment, velocity_rest_, velocity_step_);
@@ -314,12 +305,9 @@ class IncrementQuantizer {
 
  private:
   static void quantize(Vec3& increment, Vec3& rest, double step) noexcept {
-    if (step == 0) return;
-    for (int k = 0; k < 3; ++k) {
-      const double whole = increment[k] + rest[k];
-      increment[k] = step * std::round(whole / step);
-      rest[k] = whole - increment[k];
-    }
+    const Vec3 whole = increment + rest;
+    increment = detail::rounded_to(step, whole);
+    rest = whole - increment;
   }
   double angle_step_, velocity_step_;
   Vec3 angle_rest_{}, velocity_rest_{};

@@ -25,14 +25,6 @@ struct Footing {
   }
 };
 
-namespace detail {
-/// First and second derivative of an angle by those of its tangent.
-[[nodiscard]] inline Vec2 arctangent_derivatives(double tangent, double rate, double change) noexcept {
-  const double square = 1 + tangent * tangent, turn = rate / square;
-  return {turn, (change - 2 * tangent * rate * turn) / square};
-}
-}  // namespace detail
-
 /// Drive over the ground. The body's origin is the middle of the rear axle, at the height of the
 /// wheels' contact. Position, speed in space and attitude are continuous; it stops to change gear.
 class GroundVehicleDrive {
@@ -70,8 +62,10 @@ class GroundVehicleDrive {
   /// Velocity and angular rate jump at footings, between which height and slopes are linear.
   [[nodiscard]] Derivatives derivatives(Tick t) const noexcept {
     const CubicPiece<double> driven = driven_.moving_at(t);
-    const auto& [path, start, footings] = section_at(driven.position);
-    const double along = driven.position - start;
+    const Section& section = section_at(driven.position);
+    const PathPiece& path = section.path;
+    const std::vector<Footing>& footings = section.footings;
+    const double along = driven.position - section.start;
     const auto passed = [&](std::size_t i) noexcept { return !(along < footings[i].along); };
     const std::size_t k = std::min(detail::neighbours(footings.size(), passed).before, footings.size() - 2);
     const Footing &a = footings[k], &b = footings[k + 1];
@@ -81,24 +75,25 @@ class GroundVehicleDrive {
     const double heading = path.after(step * (static_cast<double>(k) + part)).heading;
     const Vec3 ahead{std::sin(heading), std::cos(heading), 0}, right{ahead.y, -ahead.x, 0};
     const double speed = path.gear * step * rate, gain = path.gear * step * change, turn = path.curvature * speed;
-    const double rise = b.height - a.height;
-    Derivatives d{.velocity = speed * ahead + rise * rate * axis::up,
-                  .acceleration = gain * ahead + speed * turn * right + rise * change * axis::up,
-                  .angular_rate = -turn * axis::up,
-                  .angular_acceleration = -path.curvature * gain * axis::up};
-    const double slope = std::lerp(a.ahead, b.ahead, part), pitch = std::atan(slope);
-    const Vec2 pitching =
-        detail::arctangent_derivatives(slope, (b.ahead - a.ahead) * rate, (b.ahead - a.ahead) * change);
+    const Vec3 rise = (b.height - a.height) * axis::up;
+    Derivatives d{speed * ahead + rate * rise, gain * ahead + speed * turn * right + change * rise, -turn * axis::up,
+                  -path.curvature * gain * axis::up};
+    // first and second derivative of an angle by those of its tangent
+    const auto angular = [](double tangent, double first, double second) noexcept {
+      const double square = 1 + tangent * tangent, turned = first / square;
+      return Vec2{turned, (second - 2 * tangent * first * turned) / square};
+    };
+    const double slope = std::lerp(a.ahead, b.ahead, part), steepens = b.ahead - a.ahead, pitch = std::atan(slope);
+    const Vec2 pitching = angular(slope, steepens * rate, steepens * change);
     d.turn_by(rotation_about(axis::right, pitch), pitching.x * axis::right, pitching.y * axis::right);
     // tangent of the roll: slope aside times the cosine of the pitch
-    const double aside = std::lerp(a.aside, b.aside, part), tilt = b.aside - a.aside, cosine = std::cos(pitch);
-    const double less = -std::sin(pitch) * pitching.x;
-    const double bend = -cosine * pitching.x * pitching.x - std::sin(pitch) * pitching.y;
-    const Vec2 rolling =
-        -detail::arctangent_derivatives(aside * cosine, tilt * rate * cosine + aside * less,
-                                        tilt * change * cosine + 2 * tilt * rate * less + aside * bend);
-    d.turn_by(rotation_about(axis::forward, -std::atan(aside * cosine)), rolling.x * axis::forward,
-              rolling.y * axis::forward);
+    const double aside = std::lerp(a.aside, b.aside, part), tilts = b.aside - a.aside, cosine = std::cos(pitch);
+    const double less = -std::sin(pitch) * pitching.x,
+                 bend = -cosine * pitching.x * pitching.x - std::sin(pitch) * pitching.y;
+    const Vec2 rolling = angular(aside * cosine, tilts * rate * cosine + aside * less,
+                                 tilts * change * cosine + 2 * tilts * rate * less + aside * bend);
+    d.turn_by(rotation_about(axis::forward, -std::atan(aside * cosine)), -rolling.x * axis::forward,
+              -rolling.y * axis::forward);
     return d;
   }
 
