@@ -77,8 +77,7 @@ class Drive {
       : any_(seed), bag_(folder / "drive.mcap", start_time), told_(folder / "drive.jsonl") {}
 
   void run() {
-    fix("base_link", "lidar");
-    fix("base_link", "imu_link");
+    fix();
     for (int step = 0; step < 20; ++step) {
       for (std::uint64_t left = any_.whole(12); left > 0; --left) write_any(any_tick(step));
       bag_.advance({step + 1, 0});
@@ -112,12 +111,14 @@ class Drive {
            json(at) + R"(,"rotation":)" + json(rotation) + "}}";
   }
 
-  void fix(const std::string& parent, const std::string& child) {
-    const Pose<frame::Instrument, frame::Body> pose{any_.rotation(), any_.point(3)};
-    bag_.fix(parent, child, pose);
-    fixed_ += (fixed_.empty() ? "" : ",") +
-              transform({}, parent, child, robots(pose.position), conjugate(robot) * pose.rotation * robot);
-    tell({}, {}, "/tf_static", R"("transforms":[)" + fixed_ + ']');
+  void fix() {
+    const Pose<frame::Instrument, frame::Body> lidar{any_.rotation(), any_.point(3)},
+        imu{any_.rotation(), any_.point(3)};
+    bag_.fix({ros::frame_of("base_link", "lidar", lidar), ros::frame_of("base_link", "imu_link", imu)});
+    const auto told = [](const std::string& child, const auto& pose) {
+      return transform({}, "base_link", child, robots(pose.position), conjugate(robot) * pose.rotation * robot);
+    };
+    tell({}, {}, "/tf_static", R"("transforms":[)" + told("lidar", lidar) + ',' + told("imu_link", imu) + ']');
   }
 
   void write_any(Tick tick) {
@@ -139,7 +140,7 @@ class Drive {
 
   void write_imu(Tick tick) {
     const ImuSample sample{.tick = tick, .angular_rate = any_vector(), .specific_force = any_vector()};
-    bag_.write(imu_, sample);
+    bag_.write(imu_, ros::imu_of(sample), tick);
     tell(tick, tick, "/imu/data",
          header(tick, imu_.frame_id) + R"(,"orientation":{"x":0,"y":0,"z":0,"w":1},"orientation_covariance":)" +
              zeros(9, -1) + R"(,"angular_velocity":)" + json(robots(sample.angular_rate)) +
@@ -150,7 +151,7 @@ class Drive {
   void write_odometry(Tick tick) {
     const Pose<frame::Body, frame::World> pose{any_.rotation(), any_.point(1e6)};
     const Vec3 velocity = any_vector(), rate = any_vector();
-    bag_.write(truth_, tick, pose, velocity, rate);
+    bag_.write(truth_, ros::odometry_of(pose, velocity, rate), tick);
     tell(tick, tick, "/ground_truth/odom",
          header(tick, "map") + R"(,"child_frame_id":"base_link","pose":{"pose":{"position":)" + json(pose.position) +
              R"(,"orientation":)" + json(pose.rotation * robot) + R"(},"covariance":)" + zeros(36) +
@@ -161,7 +162,7 @@ class Drive {
   void write_frame(Tick tick) {
     const Pose<frame::Body, frame::World> pose{any_.rotation(), any_.point(1e3)};
     const std::string parent = word(any_.whole(10)), child = word(any_.whole(10));
-    bag_.move(parent, child, pose, tick);
+    bag_.move(ros::frame_of(parent, child, pose), tick);
     tell(tick, tick, "/tf",
          R"("transforms":[)" + transform(tick, parent, child, pose.position, pose.rotation * robot) + ']');
   }
@@ -190,7 +191,8 @@ class Drive {
       add(sweep, i, tick + Tick{0, i / 64.0}, 0, range);
     }
     const Tick complete = tick + Tick{0, 0.25};
-    bag_.write(sweep_, sweep, complete, {-0.5, 0.25, 0.125, {0.0625, 30}});
+    std::vector<float> memory;
+    bag_.write(sweep_, ros::laser_scan_of(sweep, {-0.5, 0.25, 0.125, {0.0625, 30}}, memory), tick, complete);
     tell(
         complete, tick, "/scan",
         header(tick, sweep_.frame_id) + R"(,"angle_min":-0.5,"angle_max":)" + json(-0.5 + 0.25 * (beams - 1)) +
@@ -199,7 +201,7 @@ class Drive {
   }
 
   void write_livox(Tick tick) {
-    PointBuffer scan(ros::livox_layout(), {.axes = PointAxes::forward_left_up, .start_time = double{start_time}});
+    PointBuffer scan(ros::livox_layout(), {.axes = PointAxes::forward_left_up});
     scan.begin_scan(tick);
     std::string points;
     const std::uint64_t count = any_.whole(6);
@@ -212,7 +214,7 @@ class Drive {
                 json(static_cast<float>(range)) + R"(,"y":0,"z":0,"reflectivity":50,"tag":0,"line":)" + json(line) +
                 '}';
     }
-    bag_.write(livox_, scan, tick);
+    bag_.write(livox_, ros::livox_of(scan), tick);
     const auto base = (start_time + tick.second) * 1'000'000'000 + std::llround(tick.fraction * 1e9);
     tell(tick, tick, "/livox/lidar",
          header(tick, livox_.frame_id) + R"(,"timebase":")" + std::to_string(base) + R"(","point_num":)" +
@@ -232,7 +234,8 @@ class Drive {
     }
     std::vector<int> bytes;
     for (const std::byte b : std::as_bytes(std::span(depths))) bytes.push_back(static_cast<int>(b));
-    bag_.write(depths_, grid, tick);
+    std::vector<float> memory;
+    bag_.write(depths_, ros::depth_image_of(grid, memory), tick);
     tell(tick, tick, "/depth/image",
          header(tick, "") + R"(,"height":3,"width":4,"encoding":"32FC1","is_bigendian":0,"step":16,"data":)" +
              list(bytes));
@@ -242,7 +245,6 @@ class Drive {
   DriveBag bag_;
   std::ofstream told_;
   std::multimap<Tick, std::string> lines_;  // those of equal times in the order of writing
-  std::string fixed_;
   BagTopic<ros::Imu> imu_ = bag_.add<ros::Imu>("/imu/data", word(any_.whole(12)));
   BagTopic<ros::Odometry> truth_ = bag_.add<ros::Odometry>("/ground_truth/odom", "map", "base_link");
   BagTopic<ros::LaserScan> sweep_ = bag_.add<ros::LaserScan>("/scan", word(any_.whole(12)));
