@@ -65,12 +65,12 @@ TEST_CASE("messages are in order of the times when they were complete, and then 
     const auto imu = bag.add<ros::Imu>("/imu", "imu_link");
     const auto points = bag.add<ros::PointCloud2>("/points", "lidar");
     std::vector<std::pair<std::uint64_t, std::string>> expected;
-    PointBuffer scan(layouts::xyzi(), {.start_time = 1000});
+    PointBuffer scan(layouts::xyzi());
     for (int step = 0; step < 10; ++step) {
       for (std::uint64_t left = any.whole(20); left > 0; --left) {
         const Tick tick{step + static_cast<std::int64_t>(any.whole(3)), 0.125 * static_cast<double>(any.whole(8))};
         if (any.coin()) {
-          bag.write(imu, {.tick = tick, .angular_rate = {0, static_cast<double>(left), 0}});
+          bag.write(imu, ros::Imu{}, tick);
         } else {
           scan.begin_scan({step, 0.5});
           bag.write(points, scan, tick);
@@ -80,7 +80,7 @@ TEST_CASE("messages are in order of the times when they were complete, and then 
       bag.advance({step + 1, 0});
       expected.emplace_back(ros::stamp_ns(1000, {step + 1, 0}), "clock");
       if (any.coin()) continue;
-      CHECK_THROWS_WITH_AS(bag.write(imu, {.tick = {step, 0.999}}), doctest::Contains("of the last advance"),
+      CHECK_THROWS_WITH_AS(bag.write(imu, ros::Imu{}, {step, 0.999}), doctest::Contains("of the last advance"),
                            SettingError);
     }
     bag.close();
@@ -97,22 +97,33 @@ TEST_CASE("messages are in order of the times when they were complete, and then 
   }
 }
 
-TEST_CASE("the last message of fixed frames has all of them, and reaches late subscribers") {
+TEST_CASE("all fixed frames are in one message, which reaches late subscribers") {
   const TemporaryFolder folder;
   DriveBag bag(folder / "a.mcap", 1000);
-  bag.fix("base_link", "lidar", mount);
-  bag.fix("base_link", "imu_link", mount);
-  bag.advance({1, 0});
-  bag.fix("lidar", "lens", mount, {2, 0});
+  bag.fix({ros::frame_of("base_link", "lidar", mount), ros::frame_of("base_link", "imu_link", mount)});
   bag.close();
-  std::vector<std::uint32_t> counts;
-  for (const Message& m : messages_of(folder / "a.mcap"))
-    if (m.channel == 2) counts.push_back(number<std::uint32_t>(m.data, 4));
-  CHECK(counts == std::vector<std::uint32_t>{1, 2, 3});
+  const std::vector<Message> found = messages_of(folder / "a.mcap");
+  REQUIRE(found.size() == 1);
+  CHECK((found[0].channel == 2 && number<std::uint32_t>(found[0].data, 4) == 2));
   const std::string file = content(folder / "a.mcap");
   CHECK(file.find("/tf_static") != file.npos);
   CHECK(file.find("durability: 1\n") != file.npos);
   CHECK(file.find("rosbag2") != file.npos);
+}
+
+TEST_CASE("odometry has both of its frames, and a Livox the time of its scan") {
+  const TemporaryFolder folder;
+  DriveBag bag(folder / "a.mcap", 1000);
+  const auto truth = bag.add<ros::Odometry>("/truth", "map", "base_link");
+  const auto livox = bag.add<ros::CustomMsg>("/livox", "livox_frame");
+  bag.write(truth, ros::Odometry{}, {1, 0});
+  bag.write(livox, ros::CustomMsg{}, {1, 0}, {2, 0});
+  bag.close();
+  const std::vector<Message> found = messages_of(folder / "a.mcap");
+  REQUIRE(found.size() == 2);
+  CHECK((found[0].data.find("map") != std::string::npos && found[0].data.find("base_link") != std::string::npos));
+  CHECK(number<std::uint64_t>(found[1].data, 4 + 8 + 4 + 12) == 1'001'000'000'000);
+  CHECK((found[1].publish_time == 1'001'000'000'000 && found[1].log_time == 1'002'000'000'000));
 }
 
 TEST_CASE("after the first steps a bag allocates nothing but its index, and two bags are the same") {
@@ -126,14 +137,15 @@ TEST_CASE("after the first steps a bag allocates nothing but its index, and two 
     PointBuffer scan(layouts::xyzi(), {}, {.rows = 16, .columns = 100, .column_rate = 1000});
     PointBuffer sweep(ros::sweep_layout(), {}, {.rows = 1, .columns = 100, .column_rate = 1000});
     const Pose<frame::Body, frame::World> pose{};
+    std::vector<float> memory;
     for (int step = 0; step < 64; ++step) {
       const std::size_t before = support::allocations;
       const Tick end{step + 1, 0};
       bag.write(points, scan, end);
-      for (PulseIndex i = 0; i < 10; ++i) bag.write(imu, {.tick = Tick{step, 0} + Tick::of(i, 10)});
-      bag.write(sweeps, sweep, end, {});
-      bag.write(truth, end, pose, {1, 2, 3}, {});
-      bag.move("odom", "base_link", pose, end);
+      for (PulseIndex i = 0; i < 10; ++i) bag.write(imu, ros::Imu{}, Tick{step, 0} + Tick::of(i, 10));
+      bag.write(sweeps, ros::laser_scan_of(sweep, {}, memory), {step, 0}, end);
+      bag.write(truth, ros::odometry_of(pose, {1, 2, 3}, {}), end);
+      bag.move(ros::frame_of("odom", "base_link", pose), end);
       bag.advance(end);
       if (step > 0) allocations += support::allocations - before;
     }
@@ -152,10 +164,10 @@ TEST_CASE("times that ROS does not hold are refused, and without close there is 
   {
     DriveBag bag(folder / "a.mcap", -5);
     const auto imu = bag.add<ros::Imu>("/imu", "imu_link");
-    CHECK_THROWS_WITH_AS(bag.write(imu, {.tick = {4, 0}}), doctest::Contains("DriveBag::start_time + tick is -1 s"),
+    CHECK_THROWS_WITH_AS(bag.write(imu, ros::Imu{}, {4, 0}), doctest::Contains("DriveBag::start_time + tick is -1 s"),
                          SettingError);
     CHECK_THROWS_AS(bag.advance({2'147'483'653, 0}), SettingError);
-    bag.write(imu, {.tick = {5, 0}});
+    bag.write(imu, ros::Imu{}, {5, 0});
   }
   CHECK(folder.empty());
 }

@@ -207,7 +207,7 @@ TEST_CASE("libfastcdr reads from every message what it holds, with texts and seq
     for (const std::byte b : data) of_image.is(static_cast<std::uint8_t>(b));
     of_image.end();
 
-    std::vector<ros::CustomPoint> points(any.whole(5));
+    std::vector<ros::CustomPoint> points(any.whole(40));
     for (auto& p : points) p = {static_cast<std::uint32_t>(any.whole(1U << 31)), 1, -2, 3, 4, 5, 6};
     const std::uint64_t base = any.whole(1ULL << 50);
     auto of_livox = written(ros::CustomMsg{header, base, 77, 3, {1, 2, 3}, points});

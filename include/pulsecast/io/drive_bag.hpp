@@ -8,7 +8,7 @@
 
 namespace PULSECAST_NAMESPACE::io {
 
-/// Topic of a `DriveBag`, with messages of type `M` about a frame.
+/// Topic of a `DriveBag`, with messages of type `M`.
 template <ros::RosMessage M>
 struct BagTopic {
   std::uint16_t channel = 0;     ///< channel in the file
@@ -22,13 +22,16 @@ struct BagTopic {
 ///     const auto points = bag.add<ros::PointCloud2>("/points", "lidar");
 ///     const auto imu = bag.add<ros::Imu>("/imu/data", "imu_link");
 ///     const auto truth = bag.add<ros::Odometry>("/ground_truth/odom", "map", "base_link");
-///     bag.fix("base_link", "lidar", body_from_lidar);
-///     // in each step: bag.write(points, scan, end); bag.write(imu, sample); ...
+///     bag.fix({ros::frame_of("base_link", "lidar", body_from_lidar)});
+///     // in each step up to a tick `end`
+///     bag.write(points, scan, end);
+///     bag.write(imu, ros::imu_of(sample), sample.tick);
+///     bag.write(truth, ros::odometry_of(pose, velocity, angular_rate), end);
 ///     bag.advance(end);
-///     bag.close();
 ///
 /// The truth is no frame: SLAM and odometry set `map`, `odom` and `base_link` on `/tf`, and a frame has one parent.
-/// After the first steps, it allocates the index of the file only. Members throw a `FileError`.
+/// After the first steps, only the index of the file grows. Members throw a `FileError`, and a `SettingError` for times
+/// that ROS does not hold.
 class DriveBag {
  public:
   /// `start_time` is the clock time at tick 0 [s].
@@ -37,76 +40,44 @@ class DriveBag {
     file_.add_metadata("rosbag2", {});  // without it, rosbag2 expects names in the quality of service
     clock_ = add<ros::Clock>("/clock", "");
     tf_ = add<ros::TFMessage>("/tf", "");
-    fixed_ = {file_.add_channel({.topic = "/tf_static",
-                                 .schema_name = ros::type_of<ros::TFMessage>,
-                                 .schema = ros::definition_of<ros::TFMessage>,
-                                 .metadata = {{"offered_qos_profiles", transient_local}}})};
+    fixed_ = {add_channel<ros::TFMessage>("/tf_static", transient_local)};
   }
 
   /// Adds a topic. @throws SettingError beyond 65,535
   template <ros::RosMessage M>
   [[nodiscard]] BagTopic<M> add(std::string topic, std::string frame_id, std::string child_frame_id = {}) {
-    const std::uint16_t channel =
-        file_.add_channel({.topic = std::move(topic), .schema_name = ros::type_of<M>, .schema = ros::definition_of<M>});
-    return {channel, std::move(frame_id), std::move(child_frame_id)};
+    return {add_channel<M>(std::move(topic), ""), std::move(frame_id), std::move(child_frame_id)};
   }
 
-  /// Appends a scan, complete at a tick. @throws SettingError, as all `write`, for times that ROS does not hold, or
-  /// before the last `advance`
+  /// Appends a message of a tick, complete at another; sets its stamp and frames.
+  template <ros::RosMessage M>
+  void write(const BagTopic<M>& topic, M message, const Tick& tick, const Tick& complete) {
+    message.header = header(tick, topic.frame_id);
+    if constexpr (std::is_same_v<M, ros::Odometry>) message.child_frame_id = topic.child_frame_id;
+    if constexpr (std::is_same_v<M, ros::CustomMsg>) message.timebase = stamp(tick);
+    ros::serialize(message, message_);
+    keep(topic.channel, tick, complete);
+  }
+  template <ros::RosMessage M>
+  void write(const BagTopic<M>& topic, const M& message, const Tick& tick) {
+    write(topic, message, tick, tick);
+  }
+  /// Appends a scan, complete at a tick.
   void write(const BagTopic<ros::PointCloud2>& topic, const PointBuffer& scan, const Tick& complete) {
-    serialize_point_cloud2(scan, topic.frame_id, message_);
-    keep(topic.channel, stamp(scan.scan_start()), complete);
-  }
-  /// Appends a scan of a Livox, in a `ros::livox_layout()`.
-  void write(const BagTopic<ros::CustomMsg>& topic, const PointBuffer& scan, const Tick& complete) {
-    ros::CustomMsg message = ros::livox_of(scan);
-    message.timebase = stamp(scan.scan_start());
-    put(topic, message, scan.scan_start(), complete);
-  }
-  /// Appends a sweep, in a `ros::sweep_layout()`.
-  void write(const BagTopic<ros::LaserScan>& topic, const PointBuffer& sweep, const Tick& complete,
-             const ros::SweepSettings& settings) {
-    put(topic, ros::laser_scan_of(sweep, settings, numbers_), sweep.scan_start(), complete);
-  }
-  /// Appends an image of depths.
-  void write(const BagTopic<ros::Image>& topic, const PointBuffer& points, const Tick& complete) {
-    put(topic, ros::depth_image_of(points, numbers_), points.scan_start(), complete);
-  }
-  void write(const BagTopic<ros::Imu>& topic, const ImuSample& sample) {
-    put(topic, ros::imu_of(sample), sample.tick, sample.tick);
-  }
-  /// Appends odometry or the truth: a pose, a velocity in the world [m/s], and an angular rate in the body [rad/s].
-  void write(const BagTopic<ros::Odometry>& topic, const Tick& tick, const Pose<frame::Body, frame::World>& pose,
-             const Vec3& velocity, const Vec3& angular_rate) {
-    ros::Odometry message = ros::odometry_of(pose, velocity, angular_rate);
-    message.child_frame_id = topic.child_frame_id;
-    put(topic, message, tick, tick);
+    detail::serialize_points(scan, header(scan.scan_start(), topic.frame_id), message_);
+    keep(topic.channel, scan.scan_start(), complete);
   }
 
-  /// Sets the pose of a frame on `/tf`, at a tick.
-  template <class From, class To>
-  void move(std::string_view parent, std::string_view child, const Pose<From, To>& pose, const Tick& tick) {
-    const ros::TransformStamped frame{{ros::Time::of(stamp(tick)), parent}, child, ros::transform_of(pose)};
-    ros::serialize(ros::TFMessage{{&frame, 1}}, message_);
-    keep(tf_.channel, stamp(tick), tick);
-  }
-  /// Sets the pose of a fixed frame on `/tf_static`, whose last message has all of them.
-  template <class From, class To>
-  void fix(std::string parent, std::string child, const Pose<From, To>& pose, const Tick& tick = {}) {
-    frames_.push_back({std::move(parent), std::move(child), ros::transform_of(pose)});
-    std::vector<ros::TransformStamped> all;
-    for (const Frame& f : frames_) all.push_back({{ros::Time::of(stamp(tick)), f.parent}, f.child, f.pose});
-    ros::serialize(ros::TFMessage{all}, message_);
-    keep(fixed_.channel, stamp(tick), tick);
-  }
+  /// Sets the pose of a frame on `/tf`.
+  void move(ros::TransformStamped frame, const Tick& tick) { put_frames(tf_, {&frame, 1}, tick); }
+  /// Sets the poses of all fixed frames, at once, on `/tf_static`, for early and late subscribers.
+  void fix(std::vector<ros::TransformStamped> frames, const Tick& tick = {}) { put_frames(fixed_, frames, tick); }
 
-  /// Writes all messages of times before `end`, after which no earlier one may come; and `end` to `/clock`.
+  /// Writes all messages complete up to `end`, before which no other may come, and this to `/clock`.
   void advance(const Tick& end) {
-    const std::uint64_t limit = stamp(end);
-    put_until(limit);
-    end_ = limit;
-    ros::serialize(ros::Clock{ros::Time::of(limit)}, message_);
-    keep(clock_.channel, limit, end);
+    put_until(end_ = stamp(end));
+    ros::serialize(ros::Clock{ros::Time::of(end_)}, message_);
+    file_.write(clock_.channel, end_, end_, message_);
   }
 
   /// Writes the rest, and completes the file.
@@ -116,13 +87,9 @@ class DriveBag {
   }
 
  private:
-  struct Frame {
-    std::string parent, child;
-    ros::Transform pose;
-  };
   struct Waiting {
     std::uint64_t log_time, publish_time;  // [ns]
-    std::size_t at, size;                  // place in `waiting_bytes_`
+    std::size_t at, size;                  // place in `bytes_`
     std::uint16_t channel;
   };
 
@@ -135,51 +102,62 @@ class DriveBag {
       "  liveliness: 1\n  liveliness_lease_duration:\n    sec: 9223372036\n    nsec: 854775807\n"
       "  avoid_ros_namespace_conventions: false\n";
 
+  template <class M>
+  [[nodiscard]] std::uint16_t add_channel(std::string topic, const char* quality) {
+    return file_.add_channel({.topic = std::move(topic),
+                              .schema_name = ros::type_of<M>,
+                              .schema = ros::definition_of<M>,
+                              .metadata = {{"offered_qos_profiles", quality}}});
+  }
+
   [[nodiscard]] std::uint64_t stamp(const Tick& tick) const {
     return ros::stamp_ns(start_time_, tick, "DriveBag::start_time + tick");
   }
+  [[nodiscard]] ros::Header header(const Tick& tick, std::string_view frame_id) const {
+    return {ros::Time::of(stamp(tick)), frame_id};
+  }
 
-  template <class M>
-  void put(const BagTopic<M>& topic, M message, const Tick& tick, const Tick& complete) {
-    message.header = {ros::Time::of(stamp(tick)), topic.frame_id};
-    ros::serialize(message, message_);
-    keep(topic.channel, stamp(tick), complete);
+  void put_frames(const BagTopic<ros::TFMessage>& topic, std::span<ros::TransformStamped> frames, const Tick& tick) {
+    for (ros::TransformStamped& frame : frames) frame.header = header(tick, frame.header.frame_id);
+    ros::serialize(ros::TFMessage{frames}, message_);
+    keep(topic.channel, tick, tick);
   }
 
   /// Keeps the message until those of earlier times have come.
-  void keep(std::uint16_t channel, std::uint64_t publish_time, const Tick& complete) {
+  void keep(std::uint16_t channel, const Tick& tick, const Tick& complete) {
     const std::uint64_t log_time = stamp(complete);
     if (log_time < end_)
       throw SettingError("DriveBag::write (time)", complete.seconds(), "s", "not before that of the last advance");
-    waiting_.push_back({log_time, publish_time, waiting_bytes_.size(), message_.size(), channel});
-    waiting_bytes_.insert(waiting_bytes_.end(), message_.begin(), message_.end());
+    waiting_.push_back({log_time, stamp(tick), bytes_.size(), message_.size(), channel});
+    bytes_.insert(bytes_.end(), message_.begin(), message_.end());
   }
 
+  /// Writes what is complete up to a time [ns].
   void put_until(std::uint64_t limit) {
     std::ranges::sort(waiting_, {}, [](const Waiting& w) { return std::pair(w.log_time, w.at); });
-    const auto left = std::ranges::lower_bound(waiting_, limit, {}, &Waiting::log_time);
-    const std::span bytes(waiting_bytes_);
-    for (auto w = waiting_.begin(); w != left; ++w)
-      file_.write(w->channel, w->log_time, w->publish_time, bytes.subspan(w->at, w->size));
-    waiting_.erase(waiting_.begin(), left);
-    left_bytes_.clear();
+    left_.clear();
+    std::size_t kept = 0;
     for (Waiting& w : waiting_) {
-      const auto own = bytes.subspan(w.at, w.size);
-      w.at = left_bytes_.size();
-      left_bytes_.insert(left_bytes_.end(), own.begin(), own.end());
+      const auto own = std::span(bytes_).subspan(w.at, w.size);
+      if (w.log_time <= limit) {
+        file_.write(w.channel, w.log_time, w.publish_time, own);
+      } else {
+        w.at = left_.size();
+        left_.insert(left_.end(), own.begin(), own.end());
+        waiting_[kept++] = w;
+      }
     }
-    waiting_bytes_.swap(left_bytes_);
+    waiting_.resize(kept);
+    bytes_.swap(left_);
   }
 
   McapWriter file_;
   double start_time_;
   BagTopic<ros::Clock> clock_;
   BagTopic<ros::TFMessage> tf_, fixed_;
-  std::vector<Frame> frames_;  // fixed ones
   std::vector<Waiting> waiting_;
-  std::vector<std::byte> message_, waiting_bytes_, left_bytes_;  // the one under construction; of those that wait
-  std::vector<float> numbers_;                                   // of a message under construction
-  std::uint64_t end_ = 0;                                        // time before which all is written [ns]
+  std::vector<std::byte> message_, bytes_, left_;  // message under construction; those that wait, and wait on
+  std::uint64_t end_ = 0;                          // time up to which all is written [ns]
 };
 
 }  // namespace PULSECAST_NAMESPACE::io

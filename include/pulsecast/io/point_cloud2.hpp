@@ -28,7 +28,7 @@ struct PointField {
   std::uint32_t offset = 0;   ///< position in a point [byte]
   std::uint8_t datatype = 0;  ///< as `NumberType`
   std::uint32_t count = 1;    ///< numbers
-  static constexpr Description ros{"sensor_msgs/msg/PointField", "name offset datatype count"};
+  PULSECAST_ROS_MESSAGE("sensor_msgs/msg/PointField", name, offset, datatype, count)
 };
 
 /// Fields of a layout as those of a message, which has no 64-bit integers.
@@ -53,8 +53,8 @@ struct PointCloud2 {
   std::uint32_t row_step = 0;         ///< size of a row [byte]
   std::span<const std::byte> data{};  ///< records
   bool is_dense = true;               ///< true if all coordinates are finite
-  static constexpr Description ros{"sensor_msgs/msg/PointCloud2",
-                                   "header height width fields is_bigendian point_step row_step data is_dense"};
+  PULSECAST_ROS_MESSAGE("sensor_msgs/msg/PointCloud2", header, height, width, fields, is_bigendian, point_step,
+                        row_step, data, is_dense)
 };
 
 }  // namespace ros
@@ -79,28 +79,30 @@ namespace detail {
   return static_cast<std::uint32_t>(bytes);
 }
 
+/// Writes a scan with a header: see `serialize_point_cloud2`.
+inline void serialize_points(const PointBuffer& scan, const ros::Header& header, std::vector<std::byte>& message) {
+  const PointLayout& layout = scan.layout();
+  const std::uint32_t length = point_cloud2_length(scan.records().size()), rows = scan.grid().rows;
+  const std::uint32_t height = std::max(rows, std::uint32_t{1}), row = length / height;
+  const bool is_dense = rows == 0;  // echoes have finite coordinates
+  ros::serialize(
+      ros::PointCloud2{
+          header, height, row / layout.size, {layout.fields}, false, layout.size, row, scan.records(), is_dense},
+      message);
+  std::byte* const data = message.data() + message.size() - sizeof is_dense - length;
+  for (const PointField& field : layout.fields)  // a message has no 64-bit integers
+    for (std::size_t i = 0; field.type >= NumberType::int64 && i < scan.size(); ++i)
+      store_number<double>(scan.number(i, field), data + i * layout.size + field.offset);
+}
+
 }  // namespace detail
 
 /// Writes a scan as a serialized sensor_msgs/msg/PointCloud2 into `message`: see `ros::serialize`. The scan is stamped
 /// by `stamp_ns`; it is one row, or the rows of its grid, which is not dense. 64-bit integers become `float64`.
-/// Allocates nothing but `message`.
 /// @throws SettingError for more than 2^32 - 1 bytes of points, and as `stamp_ns`
 inline void serialize_point_cloud2(const PointBuffer& scan, const std::string& frame_id,
                                    std::vector<std::byte>& message) {
-  const PointLayout& layout = scan.layout();
-  const std::uint32_t length = detail::point_cloud2_length(scan.records().size());
-  ros::PointCloud2 cloud{.header = {ros::Time::of(stamp_ns(scan)), frame_id}, .fields = {layout.fields}};
-  cloud.height = std::max(scan.grid().rows, std::uint32_t{1});
-  cloud.width = static_cast<std::uint32_t>(scan.size()) / cloud.height;
-  cloud.point_step = layout.size;
-  cloud.row_step = length / cloud.height;
-  cloud.data = scan.records();
-  cloud.is_dense = scan.grid().rows == 0;  // echoes have finite coordinates
-  ros::serialize(cloud, message);
-  std::byte* const data = message.data() + message.size() - sizeof cloud.is_dense - length;
-  for (const PointField& field : layout.fields)  // a message has no 64-bit integers
-    for (std::size_t i = 0; field.type >= NumberType::int64 && i < scan.size(); ++i)
-      detail::store_number<double>(scan.number(i, field), data + i * layout.size + field.offset);
+  detail::serialize_points(scan, {ros::Time::of(stamp_ns(scan)), frame_id}, message);
 }
 
 }  // namespace PULSECAST_NAMESPACE::io

@@ -26,7 +26,7 @@ namespace PULSECAST_NAMESPACE::io::ros {
 struct Time {
   std::int32_t sec = 0;       ///< whole seconds [s]
   std::uint32_t nanosec = 0;  ///< rest [ns]
-  static constexpr Description ros{"builtin_interfaces/msg/Time", "sec nanosec"};
+  PULSECAST_ROS_MESSAGE("builtin_interfaces/msg/Time", sec, nanosec)
 
   /// Time of a stamp [ns].
   [[nodiscard]] static Time of(std::uint64_t stamp_ns) noexcept {
@@ -38,38 +38,38 @@ struct Time {
 struct Header {
   Time stamp{};                 ///< time of the data
   std::string_view frame_id{};  ///< frame of the data
-  static constexpr Description ros{"std_msgs/msg/Header", "stamp frame_id"};
+  PULSECAST_ROS_MESSAGE("std_msgs/msg/Header", stamp, frame_id)
 };
 
 /// Time of the simulation.
 struct Clock {
   Time clock{};  ///< time
-  static constexpr Description ros{"rosgraph_msgs/msg/Clock", "clock"};
+  PULSECAST_ROS_MESSAGE("rosgraph_msgs/msg/Clock", clock)
 };
 
 /// Translation, velocity or rate.
 struct Vector3 {
   double x = 0, y = 0, z = 0;  ///< components
-  static constexpr Description ros{"geometry_msgs/msg/Vector3", "x y z"};
+  PULSECAST_ROS_MESSAGE("geometry_msgs/msg/Vector3", x, y, z)
 };
 
 /// Position.
 struct Point {
   double x = 0, y = 0, z = 0;  ///< coordinates [m]
-  static constexpr Description ros{"geometry_msgs/msg/Point", "x y z"};
+  PULSECAST_ROS_MESSAGE("geometry_msgs/msg/Point", x, y, z)
 };
 
 /// Unit quaternion.
 struct Quaternion {
   double x = 0, y = 0, z = 0, w = 1;  ///< w is the real part
-  static constexpr Description ros{"geometry_msgs/msg/Quaternion", "x y z w"};
+  PULSECAST_ROS_MESSAGE("geometry_msgs/msg/Quaternion", x, y, z, w)
 };
 
 /// Pose of a frame in another one.
 struct Transform {
   Vector3 translation{};  ///< origin of the frame [m]
   Quaternion rotation{};  ///< from the frame to the other one
-  static constexpr Description ros{"geometry_msgs/msg/Transform", "translation rotation"};
+  PULSECAST_ROS_MESSAGE("geometry_msgs/msg/Transform", translation, rotation)
 };
 
 /// Pose of the child in the frame of the header.
@@ -77,41 +77,41 @@ struct TransformStamped {
   Header header{};                    ///< time, and the parent frame
   std::string_view child_frame_id{};  ///< frame that has the pose
   Transform transform{};              ///< its pose
-  static constexpr Description ros{"geometry_msgs/msg/TransformStamped", "header child_frame_id transform"};
+  PULSECAST_ROS_MESSAGE("geometry_msgs/msg/TransformStamped", header, child_frame_id, transform)
 };
 
 /// Poses of frames, as on `/tf` and `/tf_static`.
 struct TFMessage {
   std::span<const TransformStamped> transforms{};  ///< poses
-  static constexpr Description ros{"tf2_msgs/msg/TFMessage", "transforms"};
+  PULSECAST_ROS_MESSAGE("tf2_msgs/msg/TFMessage", transforms)
 };
 
 /// Position and attitude.
 struct Pose {
   Point position{};          ///< position [m]
   Quaternion orientation{};  ///< attitude
-  static constexpr Description ros{"geometry_msgs/msg/Pose", "position orientation"};
+  PULSECAST_ROS_MESSAGE("geometry_msgs/msg/Pose", position, orientation)
 };
 
 /// Pose and its uncertainty.
 struct PoseWithCovariance {
   Pose pose{};                          ///< pose
   std::array<double, 36> covariance{};  ///< of x, y, z and rotations about these; zeros: unknown [m2, m rad, rad2]
-  static constexpr Description ros{"geometry_msgs/msg/PoseWithCovariance", "pose covariance"};
+  PULSECAST_ROS_MESSAGE("geometry_msgs/msg/PoseWithCovariance", pose, covariance)
 };
 
 /// Velocities.
 struct Twist {
   Vector3 linear{};   ///< velocity [m/s]
   Vector3 angular{};  ///< angular rate [rad/s]
-  static constexpr Description ros{"geometry_msgs/msg/Twist", "linear angular"};
+  PULSECAST_ROS_MESSAGE("geometry_msgs/msg/Twist", linear, angular)
 };
 
 /// Velocities and their uncertainty.
 struct TwistWithCovariance {
   Twist twist{};                        ///< velocities
   std::array<double, 36> covariance{};  ///< as of poses, by seconds; zeros: unknown
-  static constexpr Description ros{"geometry_msgs/msg/TwistWithCovariance", "twist covariance"};
+  PULSECAST_ROS_MESSAGE("geometry_msgs/msg/TwistWithCovariance", twist, covariance)
 };
 
 /// Pose in the frame of the header, and velocities in that of the child.
@@ -120,7 +120,7 @@ struct Odometry {
   std::string_view child_frame_id{};  ///< frame that has the pose
   PoseWithCovariance pose{};          ///< pose
   TwistWithCovariance twist{};        ///< velocities
-  static constexpr Description ros{"nav_msgs/msg/Odometry", "header child_frame_id pose twist"};
+  PULSECAST_ROS_MESSAGE("nav_msgs/msg/Odometry", header, child_frame_id, pose, twist)
 };
 
 /// Sample of an inertial sensor. A covariance of zeros is unknown; one that begins with -1 has no values.
@@ -132,9 +132,8 @@ struct Imu {
   std::array<double, 9> angular_velocity_covariance{};     ///< [rad2/s2]
   Vector3 linear_acceleration{};                           ///< specific force, upwards at rest [m/s2]
   std::array<double, 9> linear_acceleration_covariance{};  ///< [m2/s4]
-  static constexpr Description ros{"sensor_msgs/msg/Imu",
-                                   "header orientation orientation_covariance angular_velocity "
-                                   "angular_velocity_covariance linear_acceleration linear_acceleration_covariance"};
+  PULSECAST_ROS_MESSAGE("sensor_msgs/msg/Imu", header, orientation, orientation_covariance, angular_velocity,
+                        angular_velocity_covariance, linear_acceleration, linear_acceleration_covariance)
 };
 
 /// Sweep of a scanner in a plane. Angles are from x forward to y left.
@@ -147,9 +146,8 @@ struct LaserScan {
   float range_min = 0, range_max = 0;    ///< limits of ranges [m]
   std::span<const float> ranges{};       ///< +infinity without a return: ROS REP 117 [m]
   std::span<const float> intensities{};  ///< as many, or none
-  static constexpr Description ros{"sensor_msgs/msg/LaserScan",
-                                   "header angle_min angle_max angle_increment time_increment scan_time range_min "
-                                   "range_max ranges intensities"};
+  PULSECAST_ROS_MESSAGE("sensor_msgs/msg/LaserScan", header, angle_min, angle_max, angle_increment, time_increment,
+                        scan_time, range_min, range_max, ranges, intensities)
 };
 
 /// Picture.
@@ -161,7 +159,7 @@ struct Image {
   std::uint8_t is_bigendian = 0;      ///< 0: little-endian
   std::uint32_t step = 0;             ///< size of a row [byte]
   std::span<const std::byte> data{};  ///< pixels, row by row
-  static constexpr Description ros{"sensor_msgs/msg/Image", "header height width encoding is_bigendian step data"};
+  PULSECAST_ROS_MESSAGE("sensor_msgs/msg/Image", header, height, width, encoding, is_bigendian, step, data)
 };
 
 /// Point of a Livox.
@@ -171,7 +169,7 @@ struct CustomPoint {
   std::uint8_t reflectivity = 0;  ///< reflectance as a byte
   std::uint8_t tag = 0;           ///< kind of the return
   std::uint8_t line = 0;          ///< number of the laser
-  static constexpr Description ros{"livox_ros_driver2/msg/CustomPoint", "offset_time x y z reflectivity tag line"};
+  PULSECAST_ROS_MESSAGE("livox_ros_driver2/msg/CustomPoint", offset_time, x, y, z, reflectivity, tag, line)
 };
 
 /// Scan of a Livox.
@@ -182,7 +180,7 @@ struct CustomMsg {
   std::uint8_t lidar_id = 0;              ///< number of the sensor
   std::array<std::uint8_t, 3> rsvd{};     ///< reserved
   std::span<const CustomPoint> points{};  ///< points
-  static constexpr Description ros{"livox_ros_driver2/msg/CustomMsg", "header timebase point_num lidar_id rsvd points"};
+  PULSECAST_ROS_MESSAGE("livox_ros_driver2/msg/CustomMsg", header, timebase, point_num, lidar_id, rsvd, points)
 };
 
 /// Vector in axes x right, y forward, z up as one in axes x forward, y left, z up.
@@ -196,6 +194,13 @@ template <class From, class To>
   const Rotation q = (in_world ? no_rotation : conjugate(own)) * pose.rotation * own;
   const Vec3 p = pose.position;
   return {in_world ? Vector3{p.x, p.y, p.z} : vector_of(p), {q.x, q.y, q.z, q.w}};
+}
+
+/// Pose of a frame in another one, by their names.
+template <class From, class To>
+[[nodiscard]] TransformStamped frame_of(std::string_view parent, std::string_view child,
+                                        const pulsecast::Pose<From, To>& pose) noexcept {
+  return {{{}, parent}, child, transform_of(pose)};
 }
 
 /// Message of a pose in the world, a velocity there [m/s], and an angular rate in axes of the body [rad/s].
@@ -258,8 +263,8 @@ inline constexpr float no_return = std::numeric_limits<float>::infinity();  ///<
   memory.resize(std::size_t{2} * beams);
   detail::take_numbers(sweep, sweep.layout().fields[0], detail::no_return, memory.data());
   detail::take_numbers(sweep, sweep.layout().fields[1], 0, memory.data() + beams);
-  const double last = settings.angle_min + settings.angle_increment * (beams - 1.0);
   const auto single = [](double number) { return static_cast<float>(number); };
+  const double last = settings.angle_min + settings.angle_increment * (beams - 1.0);
   return {{},
           single(settings.angle_min),
           single(last),

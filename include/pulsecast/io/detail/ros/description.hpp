@@ -18,50 +18,18 @@
 /// Descriptions of message types, from which come their definitions and the encoding of messages.
 namespace PULSECAST_NAMESPACE::io::ros {
 
-/// Description of a message type, which is a struct with the members of its definition, in order.
-struct Description {
-  std::string_view type;    ///< as "std_msgs/msg/Header"
-  std::string_view fields;  ///< names of the fields, a blank between them
+/// Description of a message type: its name, as "std_msgs/msg/Header", and its fields, which are members, in order.
+#define PULSECAST_ROS_MESSAGE(type, ...)                  \
+  static constexpr const char* ros_type = type;           \
+  static constexpr const char* ros_fields = #__VA_ARGS__; \
+  [[nodiscard]] constexpr auto ros_values() const noexcept { return std::tie(__VA_ARGS__); }
 
-  [[nodiscard]] constexpr auto count() const { return std::count(fields.begin(), fields.end(), ' ') + 1; }
-};
-
-/// Type of a message, by its member `ros`. Fields are numbers, texts as `std::string_view`, other messages,
+/// Struct with a `PULSECAST_ROS_MESSAGE`. Fields are numbers, texts as `std::string_view`, other messages,
 /// `std::array`s, and sequences with `size` and `[]`; bytes may be `std::byte`.
 template <class M>
-concept RosMessage = std::same_as<decltype(M::ros), const Description>;
+concept RosMessage = std::same_as<decltype(M::ros_fields), const char* const>;
 
 namespace detail {
-
-/// References to the fields of a message.
-template <RosMessage M>
-constexpr auto fields_of(const M& message) {
-  if constexpr (M::ros.count() == 1) {
-    const auto& [a] = message;
-    return std::tie(a);
-  } else if constexpr (M::ros.count() == 2) {
-    const auto& [a, b] = message;
-    return std::tie(a, b);
-  } else if constexpr (M::ros.count() == 3) {
-    const auto& [a, b, c] = message;
-    return std::tie(a, b, c);
-  } else if constexpr (M::ros.count() == 4) {
-    const auto& [a, b, c, d] = message;
-    return std::tie(a, b, c, d);
-  } else if constexpr (M::ros.count() == 6) {
-    const auto& [a, b, c, d, e, f] = message;
-    return std::tie(a, b, c, d, e, f);
-  } else if constexpr (M::ros.count() == 7) {
-    const auto& [a, b, c, d, e, f, g] = message;
-    return std::tie(a, b, c, d, e, f, g);
-  } else if constexpr (M::ros.count() == 9) {
-    const auto& [a, b, c, d, e, f, g, h, i] = message;
-    return std::tie(a, b, c, d, e, f, g, h, i);
-  } else {
-    const auto& [a, b, c, d, e, f, g, h, i, j] = message;
-    return std::tie(a, b, c, d, e, f, g, h, i, j);
-  }
-}
 
 template <class T>
 inline constexpr bool is_number = std::is_arithmetic_v<T> || std::is_same_v<T, std::byte>;
@@ -92,16 +60,16 @@ struct DefinitionText {
   /// Adds the fields of a message type, a line each, and the message types in them that are not yet there.
   template <RosMessage M>
   constexpr void add_fields() {
-    std::string_view names = M::ros.fields;
+    std::string_view names = M::ros_fields;  // a comma and a blank between them
     const auto each = [&]<class... T>(const std::tuple<const T&...>*, const auto& use) {
       (use(static_cast<const T*>(nullptr)), ...);
     };
-    constexpr decltype(fields_of(std::declval<const M&>()))* types = nullptr;
+    constexpr decltype(std::declval<const M&>().ros_values())* types = nullptr;
     each(types, [&]<class T>(const T*) {
       add_type<T>();
-      const std::string_view name = names.substr(0, names.find(' '));
-      add(" ").add(name).add("\n");
-      names.remove_prefix(std::min(name.size() + 1, names.size()));
+      const std::size_t end = std::min(names.find(','), names.size());
+      add(" ").add(names.substr(0, end)).add("\n");
+      names.remove_prefix(std::min(end + 2, names.size()));
     });
     each(types, [&]<class T>(const T*) { add_part<T>(); });
   }
@@ -117,7 +85,7 @@ struct DefinitionText {
     } else if constexpr (is_text<T>) {
       add("string");
     } else if constexpr (RosMessage<T>) {
-      add_name(T::ros.type);
+      add_name(T::ros_type);
     } else {
       add_type<Element<T>>();
       constexpr std::size_t length = array_length<T>;
@@ -131,7 +99,7 @@ struct DefinitionText {
     if constexpr (RosMessage<T>) {
       DefinitionText head;
       for (int i = 0; i < 80; ++i) head.add("=");
-      head.add("\nMSG: ").add_name(T::ros.type).add("\n");
+      head.add("\nMSG: ").add_name(T::ros_type).add("\n");
       const std::string_view title(head.characters.data(), head.size);
       if (std::string_view(characters.data(), size).find(title) == title.npos) add(title).template add_fields<T>();
     } else if constexpr (!is_number<T> && !is_text<T>) {
@@ -153,7 +121,7 @@ template <class T>
   if constexpr (is_number<T>) {
     return 2 * sizeof(T);
   } else if constexpr (RosMessage<T>) {
-    return std::apply([](const auto&... field) { return (max_size(field) + ...); }, fields_of(value));
+    return std::apply([](const auto&... field) { return (max_size(field) + ...); }, value.ros_values());
   } else {
     std::size_t size = 2 * sizeof(std::uint32_t) + 1;  // length, and the zero of a text
     if constexpr (is_number<Element<T>>) return size + (value.size() + 1) * sizeof(Element<T>);
@@ -167,7 +135,7 @@ void encode(eprosima::fastcdr::Cdr& cdr, const T& value) {
   if constexpr (is_number<T>) {
     cdr << value;
   } else if constexpr (RosMessage<T>) {
-    std::apply([&](const auto&... field) { (encode(cdr, field), ...); }, fields_of(value));
+    std::apply([&](const auto&... field) { (encode(cdr, field), ...); }, value.ros_values());
   } else {
     if constexpr (array_length<T> == 0) cdr << static_cast<std::uint32_t>(value.size() + is_text<T>);
     if constexpr (std::is_same_v<Element<T>, std::byte>) {
@@ -185,7 +153,7 @@ void encode(eprosima::fastcdr::Cdr& cdr, const T& value) {
 
 /// Name of a message type, as "std_msgs/msg/Header".
 template <RosMessage M>
-inline constexpr const char* type_of = M::ros.type.data();
+inline constexpr const char* type_of = M::ros_type;
 
 /// Definition of a message type and its parts, in the encoding "ros2msg". Source: MCAP format registry, ros2msg.
 template <RosMessage M>
