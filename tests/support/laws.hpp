@@ -251,6 +251,7 @@ template <class S>
           for (PulseIndex k = 1; k <= std::min<PulseIndex>(64, from); ++k)
             if (const auto before = source.pulse(from - k); before && !(before->tick < t))
               return detail::sentence("slot ", from, " is found for the time of an earlier one, ", from - k);
+          if (const auto found = source.pulse(std::min(from, size - 1)); found && !(found->tick < t)) continue;
           if (from + 4096 < i && !(t < pulse->tick))
             return detail::sentence("slot ", from, " is found for the time of slot ", i, ", far too early");
         }

@@ -8,11 +8,10 @@
 
 namespace PULSECAST_NAMESPACE {
 
-/// Pixels with a global shutter, such as a depth camera or flash lidar: all pixels of a frame share
-/// its time. Slot `(frame * rows + row) * columns + column` looks through the middle of a pixel of a
-/// pinhole camera, whose pixels are evenly spaced in the tangents of the angles. Row 0 is the
-/// uppermost, column 0 the leftmost. A focal length of f pixels is a field of view of
-/// `2 * std::atan(columns / (2 * f))`. Depth along forward is range times `direction(...).y`.
+/// Pixels with a global shutter, as of a depth camera or flash lidar: all of a frame fire at its time.
+/// Slot `(frame * rows + row) * columns + column` is a pixel of a pinhole camera, evenly spaced in the
+/// tangents; row 0 is the uppermost, column 0 the leftmost. A focal length of f pixels is a field of view
+/// of `2 * std::atan(columns / (2 * f))`. Depth along forward is range times `direction(...).y`.
 struct PixelArray {
   using refinements = refines<tag::FindsSlots, tag::MakesLanes, tag::StridesLanes, tag::Validated>;
   static constexpr bool strides_lanes = true;

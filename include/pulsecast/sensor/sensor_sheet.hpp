@@ -15,12 +15,10 @@ using SweptSource = Deflector<RotatingHead, Deflector<RotatingHead, Deflector<Po
 using PrismSource = Channels<Deflector<RisleyPrisms, Scanner>>;            ///< source of a sensor with prisms
 using SensorSource = AnySource<SpinningSource, SweptSource, PrismSource>;  ///< source of any `SensorSheet`
 
-/// Data sheet of a sensor whose kind is known at run time only. It is one of four:
-/// - with `prisms`, its lasers shine through these, and nothing else turns;
-/// - with a `sweep_rate`, a mirror on the head sweeps its one laser from low to high;
-/// - with a field of view of less than a turn, its one laser turns and is blocked outside of it;
-/// - all others are a `SpinningSensor`.
-/// Of n lasers, slot i is laser `i % n` in firing sequence `i / n`, as there.
+/// Data sheet of a sensor whose kind is known at run time only. With `prisms`, its lasers shine through
+/// these. With a `sweep_rate`, a mirror on the head sweeps its one laser. With a field of view of less
+/// than a turn, its one laser turns and is blocked outside of it. All others are a `SpinningSensor`.
+/// Slot i is always laser `i % n` of n in firing sequence `i / n`.
 struct SensorSheet : SpinningSensor {
   std::string packets{};        ///< format of its packets: `velodyne`, `ouster`; empty without one
   std::vector<Prism> prisms{};  ///< rotating wedges in the order of the beam
@@ -33,12 +31,10 @@ struct SensorSheet : SpinningSensor {
   void validate() const {
     SpinningSensor::validate();
     require_within("SensorSheet::sweep_rate", sweep_rate, 0, 1e12, "Hz");
-    require_within("SensorSheet::elevation_min", elevation_min, -pi / 2, pi / 2, "rad");
-    require_within("SensorSheet::elevation_max", elevation_max, elevation_min, pi / 2, "rad");
+    require_within("SensorSheet::elevation_max", elevation_max, elevation_min, elevation_min + pi, "rad");
     require_within("SensorSheet::azimuth_min", azimuth_min, -pi, pi, "rad");
     require_within("SensorSheet::azimuth_max", azimuth_max, azimuth_min, pi, "rad");
-    if (!prisms.empty()) return RisleyPrisms{prisms}.validate();
-    if (!is_swept()) return;
+    if (!prisms.empty() || !is_swept()) return;
     require_within("SensorSheet::lasers (number with sweeps or a field of view)", lasers.size(), 1, 1, "");
     const SensorLaser& laser = lasers[0];
     for (const double placed : {laser.elevation, laser.azimuth, laser.height, laser.delay, start, exit_radius})
@@ -48,16 +44,13 @@ struct SensorSheet : SpinningSensor {
   /// Source of all pulses of a time [s], rounded up to whole firing sequences. @throws SettingError
   [[nodiscard]] SensorSource source(double duration) const {
     validate();
-    if (prisms.empty() && !is_swept()) return SpinningSensor::source(duration);
-    require_not_negative("SensorSheet::source (duration)", duration, "s");
-    Scanner scanner = laser(duration);
-    if (prisms.empty()) return swept(scanner);
+    SpinningSource spinning = SpinningSensor::source(duration);
+    const std::vector<Deflector<FixedBeam, Scanner>>& emitters = spinning.source().channels();
+    if (prisms.empty()) return is_swept() ? SensorSource(swept(emitters[0].source())) : std::move(spinning);
     std::vector<Deflector<RisleyPrisms, Scanner>> lines;
-    for (const SensorLaser& line : lasers) {
-      scanner.delay = line.delay;
-      const Vec3 incident = aimed_at(line.azimuth, line.elevation).rotation * axis::forward;
-      lines.push_back({{.prisms = prisms, .incident = incident}, scanner});
-    }
+    for (const auto& emitter : emitters)
+      lines.push_back(
+          {{.prisms = prisms, .incident = emitter.moving().pose.rotation * axis::forward}, emitter.source()});
     return Channels{std::move(lines)};
   }
 
@@ -66,19 +59,18 @@ struct SensorSheet : SpinningSensor {
 
   /// Sweeps from low to high on a head, or turns from behind of a mirror that lies on its side.
   [[nodiscard]] SweptSource swept(const Scanner& scanner) const {
-    if (sweep_rate > 0) {
-      const double middle = (elevation_min + elevation_max) / 2;
-      const PolygonMirror sweep{.line_rate = sweep_rate, .sweep = elevation_max - middle};
-      return {{.angular_rate = -2 * pi * rotation_rate},
-              {{.angular_rate = 0, .start = middle, .axis = axis::right}, {sweep, scanner}}};
-    }
-    const bool right = rotation_rate > 0;
-    const PolygonMirror turn{.line_rate = std::fabs(rotation_rate),
-                             .sweep = pi,
-                             .angle_min = right ? azimuth_min : -azimuth_max,
-                             .angle_max = right ? azimuth_max : -azimuth_min};
-    return {{.angular_rate = 0},
-            {{.angular_rate = 0, .start = right ? pi / 2 : -pi / 2, .axis = axis::forward}, {turn, scanner}}};
+    const bool sweeps = sweep_rate > 0, right = rotation_rate > 0;
+    const PolygonMirror mirror{.line_rate = sweeps ? sweep_rate : std::fabs(rotation_rate),
+                               .sweep = sweeps ? (elevation_max - elevation_min) / 2 : pi,
+                               .angle_min = sweeps  ? -pi
+                                            : right ? azimuth_min
+                                                    : -azimuth_max,
+                               .angle_max = sweeps  ? pi
+                                            : right ? azimuth_max
+                                                    : -azimuth_min};
+    const double tilt = sweeps ? (elevation_min + elevation_max) / 2 : std::copysign(pi / 2, rotation_rate);
+    return {{.angular_rate = sweeps ? -2 * pi * rotation_rate : 0},
+            {{.angular_rate = 0, .start = tilt, .axis = sweeps ? axis::right : axis::forward}, {mirror, scanner}}};
   }
 };
 static_assert(InstrumentSource<SensorSource> && FindsSlots<SensorSource>);

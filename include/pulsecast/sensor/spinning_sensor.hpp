@@ -64,18 +64,13 @@ struct SpinningSensor {
     return lasers.size() * Scanner{.pulse_rate = sequence_rate, .pulses = PulseIndex{1} << 52}.slot_from(t);
   }
 
-  /// Pulses of a laser without delay in a time [s], rounded up to whole firing sequences.
-  [[nodiscard]] Scanner laser(double duration) const noexcept {
-    const auto sequences = static_cast<PulseIndex>(std::ceil(duration * sequence_rate * (1 - 1e-15)));
-    return {.pulse_rate = sequence_rate, .pulses = sequences, .laser = beam};
-  }
-
   /// Source of all pulses of a time [s], rounded up to whole firing sequences. @throws SettingError
   [[nodiscard]] SpinningSource source(double duration) const {
     validate();
     require_not_negative("SpinningSensor::source (duration)", duration, "s");
+    const auto sequences = static_cast<PulseIndex>(std::ceil(duration * sequence_rate * (1 - 1e-15)));
     std::vector<Deflector<FixedBeam, Scanner>> emitters;
-    Scanner scanner = laser(duration);
+    Scanner scanner{.pulse_rate = sequence_rate, .pulses = sequences, .laser = beam};
     for (const SensorLaser& laser : lasers) {
       scanner.delay = laser.delay;
       emitters.push_back({{aimed_at(laser.azimuth, laser.elevation, {0, exit_radius, laser.height})}, scanner});

@@ -26,7 +26,6 @@ class CalibrationFile {
   }
 
   [[nodiscard]] const YAML::Node& root() const noexcept { return root_; }
-  [[nodiscard]] const std::string& path() const noexcept { return path_; }
 
   /// Value of a key; empty if there is none. @throws FileError if the parent is no map
   [[nodiscard]] std::optional<YAML::Node> find(const YAML::Node& parent, const std::string& key) const {
