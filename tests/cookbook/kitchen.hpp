@@ -24,6 +24,8 @@ class Kitchen {
       std::filesystem::copy(data_folder.parent_path() / "examples/pulsecast" / file, folder_.path());
     std::filesystem::copy(data_folder.parent_path().parent_path() / "examples/catalogue/data/scanners_tls.xml",
                           folder_.path());
+    std::filesystem::copy(data_folder.parent_path().parent_path() / "examples/catalogue/data/sensors",
+                          folder_.path() / "sensors");
     std::filesystem::current_path(folder_.path());
   }
   ~Kitchen() { std::filesystem::current_path(before_); }

@@ -171,6 +171,37 @@ TEST_CASE("the catalogue says of every number of a beam, range, noise and turn w
   }
 }
 
+/// Values of a key of a sheet as its file has them, with commas between; `otherwise` without it.
+std::string words_of(const YAML::Node& sheet, const char* section, const char* key, const std::string& otherwise) {
+  if (!sheet[section].IsDefined() || !sheet[section][key].IsDefined()) return otherwise;
+  const YAML::Node node = sheet[section][key];
+  std::string words = node.IsScalar() ? node.Scalar() : "";
+  for (const auto& item : node) words += (words.empty() ? "" : ", ") + item.Scalar();
+  return words;
+}
+
+TEST_CASE("the table of docs/sensors.md is that of the files") {
+  std::string table;
+  for (const std::string& id : ids()) {
+    const YAML::Node sheet = YAML::LoadFile(file_of(id).string());
+    const auto words = [&](const char* section, const char* key) { return words_of(sheet, section, key, "?"); };
+    std::string firing = words("firing", "columns") + " a turn";
+    if (sheet["firing"]["period_us"].IsDefined()) firing = "each " + words("firing", "period_us") + " µs";
+    if (sheet["firing"]["rate_hz"].IsDefined()) firing = words("firing", "rate_hz") + " Hz";
+    std::string left_out;
+    for (const auto& key : sheet["left_out"]) left_out += (left_out.empty() ? "" : ", ") + key.Scalar();
+    table += "| `" + id + "` | " + sheet["name"].Scalar() + " | " +
+             std::to_string(read_sensor(file_of(id)).lasers.size()) + " | " + firing + " | " +
+             (sheet["prisms"].IsDefined() ? "prisms: " + words("prisms", "rate_hz") : words("rotation", "rate_hz")) +
+             " | " + words("ranges", "min_m") + " to " + words("ranges", "max_m") + " | " +
+             words("noise", "deviation_mm") + " | " + words("beam", "wavelength_nm") + " | " +
+             words("beam", "divergence_mrad") + " | " + left_out + " |\n";
+  }
+  const std::string page = support::content(root / "docs" / "sensors.md");
+  INFO(table);
+  CHECK(contains(page, table));
+}
+
 /// Requires equal sheets, but for rounding of units.
 void check_same(const SpinningSensor& a, const SpinningSensor& b) {
   const auto same = [](double x, double y) { return std::fabs(x - y) <= 1e-15 * std::max(1.0, std::fabs(x)); };
