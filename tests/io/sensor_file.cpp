@@ -17,6 +17,7 @@
 #include <yaml-cpp/yaml.h>
 
 #include <pulsecast/io/ouster_packets.hpp>
+#include <pulsecast/io/sensor_calibration.hpp>
 #include <pulsecast/io/velodyne_packets.hpp>
 #include <pulsecast/platform/platform.hpp>
 #include <pulsecast/platform/tripod.hpp>
@@ -230,7 +231,7 @@ TEST_CASE("the files of sensors that have a function say the same") {
   check_same(read_sensor(file_of("velodyne_vlp_16")), velodyne_vlp_16());
   check_same(read_sensor(file_of("velodyne_vlp_16"), {.rotation_rate = 20}), velodyne_vlp_16(20));
   check_same(read_sensor(file_of("velodyne_vlp_32c"), {.rotation_rate = 5}), velodyne_vlp_32c(5));
-  for (const std::size_t columns : {512, 1024, 2048}) {
+  for (const std::size_t columns : {512U, 1024U, 2048U}) {
     SensorSheet ouster = read_sensor(file_of("ouster_os1_64"), {.columns = columns});
     CHECK(ouster.beam.pulse_length == Laser{}.pulse_length);  // not published: typical of the class in the function
     ouster.beam.pulse_length = ouster_os1_64().beam.pulse_length;
@@ -250,6 +251,33 @@ TEST_CASE("sensors with packets go into the writers of packets") {
     if (sheet.packets == "velodyne") CHECK_NOTHROW(detail::VelodyneFormat::validate(sheet));
     if (sheet.packets == "ouster") CHECK_NOTHROW(detail::OusterFormat::validate(sheet));
     CHECK((sheet.packets.empty() || sheet.packets == "velodyne" || sheet.packets == "ouster"));
+  }
+}
+
+TEST_CASE("metadata of a unit give the angles of any Ouster of the catalogue") {
+  const support::TemporaryFolder folder;
+  for (const std::string& id : ids()) {
+    if (!id.starts_with("ouster")) continue;
+    CAPTURE(id);
+    const SensorSheet sheet = read_sensor(file_of(id));
+    std::string altitudes, azimuths;
+    for (std::size_t k = 0; k < sheet.lasers.size(); ++k) {
+      altitudes += (k == 0 ? "" : ", ") + std::to_string(20 - static_cast<int>(k) / 4);
+      azimuths += k == 0 ? "-1.5" : k % 2 == 0 ? ", -1.5" : ", 3";
+    }
+    std::filesystem::remove(folder / "unit.json");
+    std::ofstream(folder / "unit.json") << "{\"prod_line\": \"" << sheet.name
+                                        << "\", \"lidar_mode\": \"512x20\", \"beam_altitude_angles\": [" << altitudes
+                                        << "], \"beam_azimuth_angles\": [" << azimuths << "]}";
+    const SpinningSensor unit = read_ouster_metadata(folder / "unit.json", sheet);
+    CHECK(unit.lasers.size() == sheet.lasers.size());
+    CHECK(unit.lasers[5].elevation == doctest::Approx(radians(19)));
+    CHECK(unit.lasers[1].azimuth == doctest::Approx(radians(3)));
+    CHECK(unit.sequence_rate == 512 * 20);
+    CHECK(unit.rotation_rate == 20);
+    CHECK(unit.range_max == sheet.range_max);
+    if (id != "ouster_os1_64")
+      CHECK_THROWS_AS(static_cast<void>(read_ouster_metadata(folder / "unit.json")), FileError);
   }
 }
 
