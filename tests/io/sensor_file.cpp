@@ -364,6 +364,7 @@ TEST_CASE("damaged sheets are refused with path, line and key") {
   check(with(sound, "[1, 2]", "{from: 1, to: 2, number: 3, of: 1}"), "elevation_deg has the key 'of'");
   check(with(sound, "[1, 2]", "{from: 1, to: 2}"), "has no number");
   check(with(sound, "[1, 2]", "{from: 1, to: 2, number: 1}"), "lasers.elevation_deg.number is '1'");
+  check(with(sound, "[1, 2]", "{from: 1, to: 2, number: 2.5}"), "elevation_deg.number is no whole number");
   check(with(sound, "[0, 3]", "{from: 1, to: 2, number: 3}"), "lasers.delay_us.number is '3': expected 2");
   check(with(sound, "  elevation_deg: [1, 2]\n", ""), "SpinningSensor::lasers (number)");
   check(with(sound, "period_us: 50\n", "period_us: 50\n  rate_hz: 1000\n"), "expected one of period_us, rate_hz and");

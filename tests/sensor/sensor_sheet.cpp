@@ -131,7 +131,7 @@ TEST_CASE("sheets without meaning are refused") {
   refused(
       flat(10), [](SensorSheet& s) { s.rotation_rate = 0; }, "line_rate");
   refused(
-      swept(), [](SensorSheet& s) { s.elevation_max = -1; }, "SensorSheet::elevation_max");
+      swept(), [](SensorSheet& s) { s.elevation_max = -1; }, "PolygonMirror::sweep");
   refused(
       swept(), [](SensorSheet& s) { s.sweep_rate = -1; }, "SensorSheet::sweep_rate");
   refused(

@@ -38,13 +38,9 @@ class SensorSection {
     if (file.word(file.at(*map_, "source"), "source").empty()) file.fail(*map_, name, ".source is empty");
   }
 
-  [[nodiscard]] std::optional<YAML::Node> find(const std::string& key) const {
-    return map_ ? file_.find(*map_, key) : std::nullopt;
-  }
-
   /// Number of a key, from `low` to `high` in the unit of the key, or else `otherwise`; in SI units.
   [[nodiscard]] double number(const std::string& key, double unit, double low, double high, double otherwise) const {
-    const std::optional<YAML::Node> node = find(key);
+    const std::optional<YAML::Node> node = map_ ? file_.find(*map_, key) : std::nullopt;
     return node ? unit * file_.number(*node, name_ + "." + key, low, high) : otherwise;
   }
 
@@ -52,25 +48,22 @@ class SensorSection {
   /// `to` another. Without the key, zeros. With a `count` of 0, any number of them.
   [[nodiscard]] std::vector<double> numbers(const std::string& key, double unit, double low, double high,
                                             std::size_t count) const {
-    const std::optional<YAML::Node> node = find(key);
+    const std::optional<YAML::Node> node = map_ ? file_.find(*map_, key) : std::nullopt;
     if (!node) return std::vector<double>(count);
     const std::string name = name_ + "." + key;
-    std::vector<double> values(std::max<std::size_t>(count, 1));
+    std::vector<double> values;
     if (node->IsSequence()) {
       values = file_.numbers(*node, name, count > 0 ? count : node->size(), low, high);
     } else if (node->IsMap()) {
       require_known(file_, *node, name, {"from", "to", "number"});
-      const auto of = [&](const char* part, double least, double most) {
-        return file_.number(file_.at(*node, part), name + "." + part, least, most);
-      };
+      const double from = file_.number(file_.at(*node, "from"), name + ".from", low, high);
+      const double to = file_.number(file_.at(*node, "to"), name + ".to", low, high);
       const double most = count > 0 ? static_cast<double>(count) : double{max_emitters};
-      const double from = of("from", low, high), to = of("to", low, high),
-                   number = of("number", count > 0 ? most : 2, most);
-      values.resize(static_cast<std::size_t>(number));
-      for (std::size_t k = 0; k < values.size(); ++k)
-        values[k] = from + static_cast<double>(k) * (to - from) / (number - 1);
+      const double number = file_.number(file_.at(*node, "number"), name + ".number", count > 0 ? most : 2, most);
+      if (number != std::floor(number)) file_.fail(*node, name, ".number is no whole number");
+      for (double k = 0; k < number; ++k) values.push_back(from + k * (to - from) / (number - 1));
     } else {
-      std::ranges::fill(values, file_.number(*node, name, low, high));
+      values.assign(std::max<std::size_t>(count, 1), file_.number(*node, name, low, high));
     }
     for (double& value : values) value *= unit;
     return values;
@@ -118,7 +111,6 @@ inline void read_motion(const CalibrationFile& file, const SensorFileSettings& s
   sheet.exit_radius = rotation.number("exit_radius_mm", 1e-3, 0, 1e3, 0);
   sheet.azimuth_min = rotation.number("azimuth_min_deg", 1_deg, -180, 0, -pi);
   sheet.azimuth_max = rotation.number("azimuth_max_deg", 1_deg, 0, 180, pi);
-
   const SensorSection sweeps(file, "sweeps", {"rate_hz", "elevation_min_deg", "elevation_max_deg"});
   sheet.sweep_rate = sweeps.number("rate_hz", 1, 1e-3, 1e6, 0);
   sheet.elevation_min = sweeps.number("elevation_min_deg", 1_deg, -90, 90, 0);
@@ -143,6 +135,7 @@ inline void read_motion(const CalibrationFile& file, const SensorFileSettings& s
 /// @throws FileError with line and key @throws SettingError for settings that the file does not allow
 [[nodiscard]] inline SensorSheet read_sensor(const std::filesystem::path& path,
                                              const SensorFileSettings& settings = {}) {
+  using detail::SensorSection;
   const detail::CalibrationFile file(path, "a sensor's data sheet");
   detail::require_known(
       file, file.root(), "the sheet",
@@ -152,20 +145,15 @@ inline void read_motion(const CalibrationFile& file, const SensorFileSettings& s
   if (const auto packets = file.find(file.root(), "packets")) sheet.packets = file.word(*packets, "packets");
   detail::read_lasers(file, sheet);
   detail::read_motion(file, settings, sheet);
-
-  const detail::SensorSection beam(file, "beam",
-                                   {"wavelength_nm", "peak_power_w", "pulse_length_ns", "divergence_mrad"});
-  Laser& laser = sheet.beam;
-  laser.wavelength = beam.number("wavelength_nm", 1e-9, 100, 1e4, laser.wavelength);
-  laser.peak_power = beam.number("peak_power_w", 1, 1e-6, 1e6, laser.peak_power);
-  laser.pulse_length = beam.number("pulse_length_ns", 1e-9, 1e-3, 1e3, laser.pulse_length);
-  laser.divergence = beam.number("divergence_mrad", 1e-3, 0, 500, laser.divergence.across);
-
-  const detail::SensorSection ranges(file, "ranges", {"min_m", "max_m"});
+  const SensorSection beam(file, "beam", {"wavelength_nm", "peak_power_w", "pulse_length_ns", "divergence_mrad"});
+  sheet.beam.wavelength = beam.number("wavelength_nm", 1e-9, 100, 1e4, sheet.beam.wavelength);
+  sheet.beam.peak_power = beam.number("peak_power_w", 1, 1e-6, 1e6, sheet.beam.peak_power);
+  sheet.beam.pulse_length = beam.number("pulse_length_ns", 1e-9, 1e-3, 1e3, sheet.beam.pulse_length);
+  sheet.beam.divergence = beam.number("divergence_mrad", 1e-3, 0, 500, sheet.beam.divergence.across);
+  const SensorSection ranges(file, "ranges", {"min_m", "max_m"});
   sheet.range_min = ranges.number("min_m", 1, 0, 1e6, 0);
   sheet.range_max = ranges.number("max_m", 1, sheet.range_min, 1e6, std::numeric_limits<double>::infinity());
-  sheet.range_deviation =
-      detail::SensorSection(file, "noise", {"deviation_mm"}).number("deviation_mm", 1e-3, 0, 1e6, 0);
+  sheet.range_deviation = SensorSection(file, "noise", {"deviation_mm"}).number("deviation_mm", 1e-3, 0, 1e6, 0);
   try {
     static_cast<void>(sheet.source(2 / sheet.sequence_rate));
   } catch (const SettingError& error) {

@@ -31,7 +31,6 @@ struct SensorSheet : SpinningSensor {
   void validate() const {
     SpinningSensor::validate();
     require_within("SensorSheet::sweep_rate", sweep_rate, 0, 1e12, "Hz");
-    require_within("SensorSheet::elevation_max", elevation_max, elevation_min, elevation_min + pi, "rad");
     require_within("SensorSheet::azimuth_min", azimuth_min, -pi, pi, "rad");
     require_within("SensorSheet::azimuth_max", azimuth_max, azimuth_min, pi, "rad");
     if (!prisms.empty() || !is_swept()) return;
