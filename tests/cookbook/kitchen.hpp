@@ -25,6 +25,8 @@ class Kitchen {
     std::filesystem::copy(data_folder.parent_path().parent_path() / "examples/catalogue/data/scanners_tls.xml",
                           folder_.path());
     std::filesystem::copy(data_folder / "urdf/forklift.urdf", folder_.path());
+    std::filesystem::copy(data_folder.parent_path().parent_path() / "examples/catalogue/data/sensors",
+                          folder_.path() / "sensors");
     std::filesystem::current_path(folder_.path());
   }
   ~Kitchen() { std::filesystem::current_path(before_); }

@@ -235,6 +235,37 @@ template <class S>
   return {};
 }
 
+namespace detail {
+/// Laws of a source that `FindsSlots` or `SkipsBlocked`, at some slots and their times.
+template <class S>
+[[nodiscard]] std::string slot_laws(const S& source, std::span<const PulseIndex> slots) {
+  const PulseIndex size = source.size();
+  if constexpr (FindsSlots<S>)
+    for (const PulseIndex i : slots)
+      if (const auto pulse = source.pulse(i))
+        for (const double later : {-1.0, -1e-9, 0.0, 1e-9, 1.0}) {
+          const Tick t = pulse->tick + Tick::of_seconds(later);
+          const PulseIndex from = source.slot_from(t);
+          if (from > size) return sentence("slot ", from, " is found of ", size);
+          for (PulseIndex k = 1; k <= std::min<PulseIndex>(64, from); ++k)
+            if (const auto before = source.pulse(from - k); before && !(before->tick < t))
+              return sentence("slot ", from, " is found for the time of an earlier one, ", from - k);
+          if (const auto found = source.pulse(std::min(from, size - 1)); found && !(found->tick < t)) continue;
+          if (from + 4096 < i && !(t < pulse->tick))
+            return sentence("slot ", from, " is found for the time of slot ", i, ", far too early");
+        }
+  if constexpr (SkipsBlocked<S>)
+    for (const PulseIndex i : slots) {
+      const PulseIndex next = source.next_pulse(i);
+      if (next < i || next > size) return sentence("the next pulse after ", i, " is ", next);
+      for (PulseIndex k = 0; k < 32 && i + k < next; ++k)  // the first, and the last
+        if (source.pulse(i + k) || source.pulse(next - 1 - k))
+          return sentence("a pulse between ", i, " and ", next, " is skipped");
+    }
+  return {};
+}
+}  // namespace detail
+
 /// Pure in i, in order of time, rigid, of an emitter in the table. Asks `samples` slots evenly spread over the source
 /// and those next to them.
 template <class S>
@@ -284,27 +315,7 @@ template <class S>
       }
   if constexpr (StridesLanes<S>)
     if (const std::string broken = stride_laws(source, slots, emitters.size()); !broken.empty()) return broken;
-  if constexpr (FindsSlots<S>)
-    for (const PulseIndex i : slots)
-      if (const auto pulse = source.pulse(i))
-        for (const double later : {-1.0, -1e-9, 0.0, 1e-9, 1.0}) {
-          const Tick t = pulse->tick + Tick::of_seconds(later);
-          const PulseIndex from = source.slot_from(t);
-          if (from > size) return detail::sentence("slot ", from, " is found of ", size);
-          for (PulseIndex k = 1; k <= std::min<PulseIndex>(64, from); ++k)
-            if (const auto before = source.pulse(from - k); before && !(before->tick < t))
-              return detail::sentence("slot ", from, " is found for the time of an earlier one, ", from - k);
-          if (from + 4096 < i && !(t < pulse->tick))
-            return detail::sentence("slot ", from, " is found for the time of slot ", i, ", far too early");
-        }
-  if constexpr (SkipsBlocked<S>)
-    for (const PulseIndex i : slots) {
-      const PulseIndex next = source.next_pulse(i);
-      if (next < i || next > size) return detail::sentence("the next pulse after ", i, " is ", next);
-      for (PulseIndex k = 0; k < 32 && i + k < next; ++k)  // the first, and the last
-        if (source.pulse(i + k) || source.pulse(next - 1 - k))
-          return detail::sentence("a pulse between ", i, " and ", next, " is skipped");
-    }
+  if (const std::string broken = detail::slot_laws(source, slots); !broken.empty()) return broken;
   if (last && source.duration().seconds() < last->seconds() - first->seconds())
     return "pulses leave after the source's duration";
   return {};

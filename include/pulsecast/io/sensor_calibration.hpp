@@ -111,13 +111,15 @@ inline void write_ouster_metadata(const std::filesystem::path& path, const Spinn
   file.commit();
 }
 
-/// OS1-64 with the angles, lenses, columns and rate of a unit's metadata, without or with sections;
-/// all else is of the data sheet. @throws FileError with the line of the first error
-[[nodiscard]] inline SpinningSensor read_ouster_metadata(const std::filesystem::path& path) {
+/// Sensor of a data sheet, of any Ouster with spinning lasers by its `name`, with the angles, lenses,
+/// columns and rate of a unit's metadata, without or with sections. @throws FileError with the line
+[[nodiscard]] inline SpinningSensor read_ouster_metadata(const std::filesystem::path& path,
+                                                         SpinningSensor sensor = ouster_os1_64()) {
   const detail::CalibrationFile file(path, "the metadata of an Ouster sensor");
   const YAML::Node line = file.at("prod_line");
   const std::string model = file.word(line, "prod_line");
-  if (!model.starts_with("OS-1-64")) file.fail(line, "prod_line is ", text::quoted(model), ": expected OS-1-64");
+  if (!model.starts_with(sensor.name))
+    file.fail(line, "prod_line is ", text::quoted(model), ": expected ", sensor.name);
 
   const YAML::Node mode = file.at("lidar_mode");
   const std::string word = file.word(mode, "lidar_mode");
@@ -126,7 +128,8 @@ inline void write_ouster_metadata(const std::filesystem::path& path, const Spinn
   const auto rate = text::number_in<unsigned>(rest);
   if ((columns != 512 && columns != 1024 && columns != 2048) || !rate || *rate < 1 || *rate > 100)
     file.fail(mode, "lidar_mode is ", text::quoted(word), ": expected columns and rate, as 1024x10");
-  SpinningSensor sensor = ouster_os1_64(*columns, *rate);
+  sensor.rotation_rate = *rate;
+  sensor.sequence_rate = *columns * sensor.rotation_rate;
 
   const std::size_t count = sensor.lasers.size();
   const auto angles = [&](const char* name, double most) {

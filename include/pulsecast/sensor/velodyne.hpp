@@ -34,10 +34,8 @@ namespace PULSECAST_NAMESPACE {
 /// Velodyne, VLP-32C user manual 63-9325 rev. C, 2019, table of lasers and data sheet.
 [[nodiscard]] inline SpinningSensor velodyne_vlp_32c(double rotation_rate = 10) {
   using namespace literals;
-  struct Row {
-    double elevation, azimuth;  // [deg]
-  };
-  constexpr std::array<Row, 32> rows{
+  constexpr std::array<std::pair<double, double>, 32> rows{
+      // elevation and azimuth [deg]
       {{-25, 1.4},     {-1, -4.2},    {-1.667, 1.4},  {-15.639, -1.4}, {-11.31, 1.4},  {0, -1.4},      {-0.667, 4.2},
        {-8.843, -1.4}, {-7.254, 1.4}, {0.333, -4.2},  {-0.333, 1.4},   {-6.148, -1.4}, {-5.333, 4.2},  {1.333, -1.4},
        {0.667, 4.2},   {-4, -1.4},    {-4.667, 1.4},  {1.667, -4.2},   {1, 1.4},       {-3.667, -4.2}, {-3.333, 4.2},
