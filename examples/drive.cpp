@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
 
-// A robot drives through a small town, with a spinning lidar, a scanner in a plane and an inertial sensor. Writes what
-// they measure as a bag of ROS 2, drive.mcap, with frames and truth, as SLAM programs read it, and the true path as
-// truth.tum. The same seed gives the same bag, on any number of threads. docs/robotics.md explains the topics.
+// A robot drives through a small town, with a lidar, a flat scanner and an inertial sensor. Writes a bag of ROS 2 with
+// frames and truth, drive.mcap, and truth.tum. A seed gives the same bag on any number of threads. See
+// docs/robotics.md.
 
 #include <cmath>
 #include <cstdint>
@@ -31,15 +31,13 @@ struct Robot {
   GroundVehicleDrive drive;
   double phase;  ///< of the sway [rad]
 
-  [[nodiscard]] Pose<frame::Body, frame::World> at(Tick t) const noexcept {
-    auto pose = drive.at(t);
+  Pose<frame::Body, frame::World> at(Tick t) const noexcept {
+    const auto pose = drive.at(t);
     const Rotation pitch = rotation_about(axis::right, 0.7_deg * std::sin(2 * pi * t.phase(1.1) + phase));
     const Rotation roll = rotation_about(axis::forward, 0.9_deg * std::sin(2 * pi * t.phase(0.8) + 2 * phase));
-    pose.rotation = normalize(pose.rotation * pitch * roll);
-    return pose;
+    return {normalize(pose.rotation * pitch * roll), pose.position};
   }
 };
-static_assert(Trajectory<Robot>);
 
 /// Way along a street, from side to side, and at the crossing into the other one [m].
 std::vector<Vec2> way(std::uint64_t seed) {
@@ -55,57 +53,68 @@ std::vector<Vec2> way(std::uint64_t seed) {
 int main(int argc, char** argv) {
   CommandLine line("A robot drives through a small town. What its sensors measure is written as a bag of ROS 2.");
   double duration = 15;
-  bool undistorted = false;
+  bool removed = false;
   line.add_number("--duration", duration, 0.1, 20, "s", "Duration of the drive");
-  line.add_flag("--undistorted", undistorted, "Remove the distortion of scans by the robot's motion");
+  line.add_flag("--undistorted", removed, "Remove the distortion of scans by the robot's motion");
   return line.run(argc, argv, [&] {
     const street::Scene town = street::scene(line.seed);
     const auto ground = [&](const Vec2& place, auto... near) { return town.ground_height(place, near...); };
     const Robot robot{plan_ground_vehicle(way(line.seed), ground, {.acceleration = 4, .jerk = 8, .turn_radius = 10}),
                       static_cast<double>(line.seed)};
-
-    io::DriveBag bag(line.output / "drive.mcap", 1.7e9);  // the clock at the start [s]
-    io::TrajectoryWriter path(line.output / "truth.tum");
     SensorKit kit;
-    ThreadPool pool(line.threads);
+    io::DriveBag bag(line.output / "drive.mcap", 1.7e9);  // the clock at the start [s]
+    std::vector<io::ros::TransformStamped> frames;
 
-    // adds a lidar whose scans go to a topic, in a frame of its own
-    const auto add_lidar = [&](const std::string& name, const Mount& mount, const SpinningSensor& sensor,
-                               io::PointLayout layout, double scans, const auto& topic, auto write) {
+    const auto add_lidar = [&](const char* name, const SpinningSensor& sensor, const Mount& mount,
+                               io::PointLayout layout, const io::PointGrid& grid, auto write) {
       const Platform platform{robot, mount, sensor.source(duration)};
-      bag.fix("base_link", name, mount.pose());
-      kit.add_scans(
-          name, Survey{platform, SingleRay{}, town, sensor.receiver(), FirstHit{}, line.seed}, scans,
-          io::PointBuffer(std::move(layout),
-                          {.sensor = [platform](Tick t) { return platform.instrument_at(t); },
-                           .distortion = undistorted ? io::MotionDistortion::removed : io::MotionDistortion::kept,
-                           .axes = io::PointAxes::forward_left_up,
-                           .rings = sensor.rings(), .start_time = 1.7e9}),
-          [&, topic, write](const io::PointBuffer& scan) { write(topic, scan); });
+      const io::PointSettings settings{
+          .sensor = [platform](Tick t) { return platform.instrument_at(t); },
+          .distortion = removed ? io::MotionDistortion::removed : io::MotionDistortion::kept,
+          .axes = io::PointAxes::forward_left_up,
+          .rings = sensor.rings()};
+      kit.add_scans(name, Survey{platform, SingleRay{}, town, sensor.receiver(), FirstHit{}, line.seed},
+                    sensor.rotation_rate, io::PointBuffer(std::move(layout), settings, grid), write);
+      frames.push_back(io::ros::frame_of("base_link", name, mount.pose()));
     };
+
     const auto points = bag.add<io::ros::PointCloud2>("/points", "lidar");
-    add_lidar("lidar", {.lever_arm = {0, 1, 1.9}}, velodyne_vlp_32c(), io::layouts::velodyne(), 10, points,
-              [&](const auto& topic, const io::PointBuffer& scan) { bag.write(topic, scan, kit.time()); });
+    add_lidar("lidar", velodyne_vlp_32c(), {.lever_arm = {0, 1, 1.9}}, io::layouts::velodyne(), {},
+              [&](const io::PointBuffer& scan) { bag.write(points, scan, kit.time()); });
 
-    // inertial sensor, and the truth
-    const Imu imu{robot, Mount{.lever_arm = {0, 1, 1}}, mti_1()};
-    const auto samples = bag.add<io::ros::Imu>("/imu/data", "imu_link");
-    bag.fix("base_link", "imu_link", imu.mount().pose());
-    kit.add_samples("imu", imu.settings().sample_rate, [&](PulseIndex i, Tick) {
-      if (i > 0) bag.write(samples, imu.sample(i - 1));
+    // a scanner in a plane: 1,080 beams a turn, the first one forward, to the right
+    const SpinningSensor flat{.lasers = {{}}, .sequence_rate = 40 * 1080, .rotation_rate = 40, .range_max = 30};
+    const auto sweeps = bag.add<io::ros::LaserScan>("/scan", "flat");
+    const io::ros::SweepSettings shape{.angle_increment = -2 * pi / 1080, .scan_time = 1.0 / 40, .gate = {0.1, 30}};
+    std::vector<float> ranges;
+    add_lidar("flat", flat, {.lever_arm = {0, 2.5, 0.5}}, io::ros::sweep_layout(), {1, 1080, flat.sequence_rate},
+              [&](const io::PointBuffer& sweep) {
+                bag.write(sweeps, io::ros::laser_scan_of(sweep, shape, ranges), sweep.scan_start(), kit.time());
+              });
+
+    const Imu imu{robot, Mount{.lever_arm = {0, 1, 1}}, mti_1(400)};
+    const auto samples = bag.add<io::ros::Imu>("/imu/data", "imu");
+    frames.push_back(io::ros::frame_of("base_link", "imu", imu.mount().pose()));
+    kit.add_samples("imu", 400, [&](PulseIndex i, Tick t) {
+      if (i > 0) bag.write(samples, io::ros::imu_of(imu.sample(i - 1)), t);  // of the interval that ends there
     });
+
     const auto truth = bag.add<io::ros::Odometry>("/ground_truth/odom", "map", "base_link");
+    std::vector<Tick> ticks;
     kit.add_samples("truth", 100, [&](PulseIndex, Tick t) {
-      const Derivatives now = derivatives_of(robot, t);
-      bag.write(truth, t, robot.at(t), now.velocity, now.angular_rate);
+      const Derivatives motion = derivatives_of(robot, t);
+      bag.write(truth, io::ros::odometry_of(robot.at(t), motion.velocity, motion.angular_rate), t);
+      ticks.push_back(t);
     });
 
-    for (std::uint64_t step = 1; Tick::of(step, 100) <= Tick::of_seconds(duration); ++step) {
+    bag.fix(frames);
+    ThreadPool pool(line.threads);
+    for (PulseIndex step = 1; Tick::of(step, 100) <= Tick::of_seconds(duration); ++step) {
       kit.step(Tick::of(step, 100), pool);
-      bag.advance(Tick::of(step, 100));
+      bag.advance(kit.time());
     }
     bag.close();
-    std::cout << "Drove " << std::round(robot.drive.driven().at(Tick::of_seconds(duration)).position)
-              << " m; the bag is " << (line.output / "drive.mcap").string() << '\n';
+    io::write_trajectory(line.output / "truth.tum", io::timed_poses(robot, ticks), io::tum_format(), 1.7e9);
+    std::cout << "The results are in " << line.output.string() << ".\n";
   });
 }
