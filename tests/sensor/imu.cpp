@@ -331,6 +331,22 @@ TEST_CASE("increments, integrated over a minute, are the path to 1 mm and 1e-6 r
   }
 }
 
+TEST_CASE(
+    "means over intervals, integrated by the midpoint rule, are the path of a drive over footings, which rates miss") {
+  const std::vector<Vec2> way{{0, 0}, {0, 60}, {40, 90}, {150, 90}, {150, 200}, {300, 300}, {300, 900}};
+  const Imu imu{plan_ground_vehicle(way, hills, {.speed = 12}), Mount{}};
+  Navigator at = Navigator::begin(imu, {});
+  double worst = 0;
+  for (PulseIndex i = 0; i < 60 * 400; ++i) {
+    const ImuSample s = imu.sample(i);
+    const Vec3 angle = s.interval * s.mean_angular_rate();
+    at.step(angle, s.interval * (rotation_by(0.5 * angle) * s.mean_specific_force()), s.interval);
+    worst = std::max(worst, length(at.position - imu.instrument_at(s.tick).position));
+  }
+  CHECK(worst < 1e-3);
+  CHECK(errors_of_rates(imu).x > 1);
+}
+
 TEST_CASE("after a year the increments are as exact as in the first second") {
   struct Delayed {
     Tumbling motion{};

@@ -21,6 +21,13 @@ struct ImuSample {
   Vec3 velocity_increment{};  ///< specific force, integrated over the interval, in the axes at its begin [m/s]
   Vec3 angular_rate{};        ///< at `tick` [rad/s]
   Vec3 specific_force{};      ///< acceleration less gravity, at `tick` [m/s2]
+
+  /// Means over the interval, as the filter of a real sensor gives, with what happens between: rates [rad/s], and
+  /// specific forces in the axes in the middle [m/s^2]. The midpoint rule integrates them as exactly as the increments.
+  [[nodiscard]] Vec3 mean_angular_rate() const noexcept { return angle_increment / interval; }
+  [[nodiscard]] Vec3 mean_specific_force() const noexcept {
+    return rotation_by(-0.5 * angle_increment) * velocity_increment / interval;
+  }
 };
 
 /// Gravity and rotation of the earth, both constant over the map, whose z is up along the plumb line.
