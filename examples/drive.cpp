@@ -24,7 +24,7 @@
 #include "street.hpp"
 
 using namespace pulsecast;
-using namespace pulsecast::literals;
+using namespace literals;
 
 /// Robot on springs: it follows the ground, and sways.
 struct Robot {
@@ -43,8 +43,7 @@ struct Robot {
 std::vector<Vec2> way(std::uint64_t seed) {
   street::Dice dice(seed, 9);
   std::vector<Vec2> points{{1.9, -88}};
-  double side = seed % 2 == 0 ? 1 : -1;
-  for (double y = -74; y < -25; y += dice.between(14, 20), side = -side)
+  for (double y = -74, side = 1; y < -25; y += dice.between(14, 20), side = -side)
     points.emplace_back(1.9 + side * dice.between(0.5, 1.5), y);
   points.insert(points.end(), {{1.9, -1.9}, {58, -1.9}});
   return points;
@@ -64,7 +63,6 @@ int main(int argc, char** argv) {
     SensorKit kit;
     io::DriveBag bag(line.output / "drive.mcap", 1.7e9);  // the clock at the start [s]
     std::vector<io::ros::TransformStamped> frames;
-
     const auto add_lidar = [&](const char* name, const SpinningSensor& sensor, const Mount& mount,
                                io::PointLayout layout, const io::PointGrid& grid, auto write) {
       const Platform platform{robot, mount, sensor.source(duration)};
@@ -96,7 +94,9 @@ int main(int argc, char** argv) {
     const auto samples = bag.add<io::ros::Imu>("/imu/data", "imu");
     frames.push_back(io::ros::frame_of("base_link", "imu", imu.mount().pose()));
     kit.add_samples("imu", 400, [&](PulseIndex i, Tick t) {
-      if (i > 0) bag.write(samples, io::ros::imu_of(imu.sample(i - 1)), t);  // of the interval that ends there
+      if (i == 0) return;  // samples are complete when their interval ends
+      const ImuSample sample = imu.sample(i - 1);
+      bag.write(samples, io::ros::imu_of(sample), sample.middle(), t);
     });
 
     const auto truth = bag.add<io::ros::Odometry>("/ground_truth/odom", "map", "base_link");
@@ -106,7 +106,6 @@ int main(int argc, char** argv) {
       bag.write(truth, io::ros::odometry_of(robot.at(t), motion.velocity, motion.angular_rate), t);
       ticks.push_back(t);
     });
-
     bag.fix(frames);
     ThreadPool pool(line.threads);
     for (PulseIndex step = 1; Tick::of(step, 100) <= Tick::of_seconds(duration); ++step) {

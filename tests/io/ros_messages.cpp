@@ -287,11 +287,14 @@ TEST_CASE("odometry has the velocity in axes of the body") {
 }
 
 TEST_CASE("a sample of an inertial sensor has no orientation, and its vectors are in axes of ROS") {
-  const ros::Imu m = ros::imu_of({.angular_rate = {1, 2, 3}, .specific_force = {4, 5, 9.81}});
+  const ros::Imu m = ros::imu_of({.interval = 2, .velocity_increment = {8, 10, 19.62}});
   CHECK(m.orientation_covariance == std::array<double, 9>{-1});
   CHECK(m.angular_velocity_covariance == std::array<double, 9>{});
-  CHECK(vec3(m.angular_velocity) == Vec3{2, -1, 3});
+  CHECK(vec3(m.angular_velocity) == Vec3{0, 0, 0});
   CHECK(vec3(m.linear_acceleration) == Vec3{5, -4, 9.81});
+  const ImuSample turning{.interval = 2, .angle_increment = {2, 4, 6}, .velocity_increment = {0, 0, 20}};
+  CHECK(vec3(ros::imu_of(turning).angular_velocity) == Vec3{2, -1, 3});
+  CHECK(length(vec3(ros::imu_of(turning).linear_acceleration)) == doctest::Approx(10));
 }
 
 TEST_CASE("a sweep has a range a beam, and infinity for those without a return") {

@@ -25,7 +25,7 @@ struct BagTopic {
 ///     bag.fix({ros::frame_of("base_link", "lidar", body_from_lidar)});
 ///     // in each step up to a tick `end`
 ///     bag.write(points, scan, end);
-///     bag.write(imu, ros::imu_of(sample), sample.tick);
+///     bag.write(imu, ros::imu_of(sample), sample.middle(), sample.tick);
 ///     bag.write(truth, ros::odometry_of(pose, velocity, angular_rate), end);
 ///     bag.advance(end);
 ///

@@ -211,11 +211,11 @@ template <class From, class To>
   return {.pose = {.pose = {{p.x, p.y, p.z}, q}}, .twist = {.twist = {vector_of(v), vector_of(angular_rate)}}};
 }
 
-/// Message of a sample. No orientation is measured.
+/// Message of a sample: its means, which hold in the `middle()` of its interval. No orientation is measured.
 [[nodiscard]] inline Imu imu_of(const ImuSample& sample) noexcept {
   Imu imu;
-  imu.angular_velocity = vector_of(sample.angular_rate);
-  imu.linear_acceleration = vector_of(sample.specific_force);
+  imu.angular_velocity = vector_of(sample.mean_angular_rate());
+  imu.linear_acceleration = vector_of(sample.mean_specific_force());
   return imu;
 }
 

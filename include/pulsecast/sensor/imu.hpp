@@ -22,6 +22,7 @@ struct ImuSample {
   Vec3 angular_rate{};        ///< at `tick` [rad/s]
   Vec3 specific_force{};      ///< acceleration less gravity, at `tick` [m/s2]
 
+  [[nodiscard]] Tick middle() const noexcept { return tick - Tick::of_seconds(interval / 2); }  ///< of the interval
   /// Means over the interval, as the filter of a real sensor gives, with what happens between: rates [rad/s], and
   /// specific forces in the axes in the middle [m/s^2]. The midpoint rule integrates them as exactly as the increments.
   [[nodiscard]] Vec3 mean_angular_rate() const noexcept { return angle_increment / interval; }

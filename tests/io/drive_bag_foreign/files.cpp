@@ -139,13 +139,14 @@ class Drive {
   }
 
   void write_imu(Tick tick) {
-    const ImuSample sample{.tick = tick, .angular_rate = any_vector(), .specific_force = any_vector()};
+    const ImuSample sample{
+        .tick = tick, .interval = 1, .angle_increment = any_vector(), .velocity_increment = any_vector()};
     bag_.write(imu_, ros::imu_of(sample), tick);
     tell(tick, tick, "/imu/data",
          header(tick, imu_.frame_id) + R"(,"orientation":{"x":0,"y":0,"z":0,"w":1},"orientation_covariance":)" +
-             zeros(9, -1) + R"(,"angular_velocity":)" + json(robots(sample.angular_rate)) +
+             zeros(9, -1) + R"(,"angular_velocity":)" + json(robots(sample.mean_angular_rate())) +
              R"(,"angular_velocity_covariance":)" + zeros(9) + R"(,"linear_acceleration":)" +
-             json(robots(sample.specific_force)) + R"(,"linear_acceleration_covariance":)" + zeros(9));
+             json(robots(sample.mean_specific_force())) + R"(,"linear_acceleration_covariance":)" + zeros(9));
   }
 
   void write_odometry(Tick tick) {
