@@ -39,14 +39,24 @@ struct Robot {
   }
 };
 
-/// Way along a street, from side to side, and at the crossing into the other one [m].
-std::vector<Vec2> way(std::uint64_t seed) {
+/// Robot that drives along a street, from side to side, and turns at the crossing into the other one.
+Robot robot_in(const street::Scene& town, std::uint64_t seed) {
   street::Dice dice(seed, 9);
-  std::vector<Vec2> points{{1.9, -88}};
+  std::vector<Vec2> way{{1.9, -88}};
   for (double y = -74, side = 1; y < -25; y += dice.between(14, 20), side = -side)
-    points.emplace_back(1.9 + side * dice.between(0.5, 1.5), y);
-  points.insert(points.end(), {{1.9, -1.9}, {58, -1.9}});
-  return points;
+    way.emplace_back(1.9 + side * dice.between(0.5, 1.5), y);
+  way.insert(way.end(), {{1.9, -1.9}, {58, -1.9}});
+  const auto ground = [&](const Vec2& place, auto... near) { return town.ground_height(place, near...); };
+  return {plan_ground_vehicle(way, ground, {.acceleration = 4, .jerk = 8, .turn_radius = 10}),
+          static_cast<double>(seed)};
+}
+
+/// Points in the frame of a sensor, at the time of each or, if the distortion is removed, at the start of the scan.
+io::PointSettings points_of(const auto& platform, const SpinningSensor& sensor, bool removed) {
+  return {.sensor = [platform](Tick t) { return platform.instrument_at(t); },
+          .distortion = removed ? io::MotionDistortion::removed : io::MotionDistortion::kept,
+          .axes = io::PointAxes::forward_left_up,
+          .rings = sensor.rings()};
 }
 
 int main(int argc, char** argv) {
@@ -57,22 +67,16 @@ int main(int argc, char** argv) {
   line.add_flag("--undistorted", removed, "Remove the distortion of scans by the robot's motion");
   return line.run(argc, argv, [&] {
     const street::Scene town = street::scene(line.seed);
-    const auto ground = [&](const Vec2& place, auto... near) { return town.ground_height(place, near...); };
-    const Robot robot{plan_ground_vehicle(way(line.seed), ground, {.acceleration = 4, .jerk = 8, .turn_radius = 10}),
-                      static_cast<double>(line.seed)};
+    const Robot robot = robot_in(town, line.seed);
     SensorKit kit;
     io::DriveBag bag(line.output / "drive.mcap", 1.7e9);  // the clock at the start [s]
     std::vector<io::ros::TransformStamped> frames;
     const auto add_lidar = [&](const char* name, const SpinningSensor& sensor, const Mount& mount,
                                io::PointLayout layout, const io::PointGrid& grid, auto write) {
       const Platform platform{robot, mount, sensor.source(duration)};
-      const io::PointSettings settings{
-          .sensor = [platform](Tick t) { return platform.instrument_at(t); },
-          .distortion = removed ? io::MotionDistortion::removed : io::MotionDistortion::kept,
-          .axes = io::PointAxes::forward_left_up,
-          .rings = sensor.rings()};
       kit.add_scans(name, Survey{platform, SingleRay{}, town, sensor.receiver(), FirstHit{}, line.seed},
-                    sensor.rotation_rate, io::PointBuffer(std::move(layout), settings, grid), write);
+                    sensor.rotation_rate,
+                    io::PointBuffer(std::move(layout), points_of(platform, sensor, removed), grid), write);
       frames.push_back(io::ros::frame_of("base_link", name, mount.pose()));
     };
 
