@@ -13,7 +13,6 @@
 
 #include <pulsecast/base/thread_pool.hpp>
 #include <pulsecast/io/drive_bag.hpp>
-#include <pulsecast/io/trajectory.hpp>
 #include <pulsecast/platform/ground_vehicle.hpp>
 #include <pulsecast/pulsecast.hpp>
 #include <pulsecast/sensor/imu.hpp>
@@ -104,11 +103,9 @@ int main(int argc, char** argv) {
     });
 
     const auto truth = bag.add<io::ros::Odometry>("/ground_truth/odom", "map", "base_link");
-    std::vector<Tick> ticks;
     kit.add_samples("truth", 100, [&](PulseIndex, Tick t) {
       const Derivatives motion = derivatives_of(robot, t);
       bag.write(truth, io::ros::odometry_of(robot.at(t), motion.velocity, motion.angular_rate), t);
-      ticks.push_back(t);
     });
     bag.fix(frames);
     ThreadPool pool(line.threads);
@@ -117,7 +114,6 @@ int main(int argc, char** argv) {
       bag.advance(kit.time());
     }
     bag.close();
-    io::write_trajectory(line.output / "truth.tum", io::timed_poses(robot, ticks), io::tum_format(), 1.7e9);
     std::cout << "The results are in " << line.output.string() << ".\n";
   });
 }
