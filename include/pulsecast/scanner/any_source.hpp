@@ -16,6 +16,7 @@ template <class First, class... Others>
 class AnySource {
  public:
   using refinements = refines<tag::MakesLanes>;
+  static constexpr bool strides_lanes = detail::MakesStridedLanes<First> && (detail::MakesStridedLanes<Others> && ...);
   /// Takes a source of one of the types.
   template <class Source>
   requires std::constructible_from<std::variant<First, Others...>, Source> AnySource(Source source)
@@ -33,11 +34,10 @@ class AnySource {
   [[nodiscard]] auto pulse(PulseIndex i) const noexcept -> decltype(std::declval<const First&>().pulse(i)) {
     return std::visit([i](const auto& s) noexcept { return s.pulse(i); }, source_);
   }
-  [[nodiscard]] auto pulse_lanes(PulseIndex i, std::size_t count) const noexcept {
-    return std::visit([=](const auto& s) noexcept { return find_pulses(s, i, count); }, source_);
+  [[nodiscard]] auto pulse_lanes(PulseIndex i, std::size_t count, PulseIndex step = 1) const noexcept {
+    return std::visit([=](const auto& s) noexcept { return find_pulses(s, i, count, step); }, source_);
   }
-  [[nodiscard]] PulseIndex slot_from(Tick t) const noexcept requires FindsSlots<First> &&
-      (FindsSlots<Others> && ...) {
+  [[nodiscard]] PulseIndex slot_from(Tick t) const noexcept requires FindsSlots<First> &&(FindsSlots<Others>&&...) {
     return std::visit([t](const auto& s) noexcept { return s.slot_from(t); }, source_);
   }
   [[nodiscard]] PulseIndex next_pulse(PulseIndex i) const noexcept requires SkipsBlocked<First> ||
