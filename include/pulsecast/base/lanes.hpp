@@ -31,6 +31,8 @@ namespace detail {
                                                                      const simd::Doubles& product) noexcept {
 #if defined(__FMA__)
   if constexpr (sizeof(simd::Doubles) == 32) return __builtin_ia32_vfmaddpd256(a, b, -product);
+#elif defined(__aarch64__)
+  return vfmaq_f64(-product, a, b);
 #endif
   constexpr double splitter = 0x1p27 + 1;
   const simd::Doubles a_far = splitter * a, a_high = a_far - (a_far - a), a_low = a - a_high;

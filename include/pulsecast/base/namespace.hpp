@@ -27,6 +27,8 @@
 #define PULSECAST_INSTRUCTIONS avx
 #elif defined(__SSE4_1__)
 #define PULSECAST_INSTRUCTIONS sse4
+#elif defined(__aarch64__)
+#define PULSECAST_INSTRUCTIONS neon
 #else
 #define PULSECAST_INSTRUCTIONS baseline
 #endif

@@ -7,6 +7,9 @@
 #include <cstring>
 #include <type_traits>
 #include <utility>
+#if defined(__aarch64__)
+#include <arm_neon.h>
+#endif
 
 #include <pulsecast/base/namespace.hpp>
 
@@ -117,6 +120,11 @@ inline void add_lanes(double& sum, const Doubles& v) noexcept {
   if constexpr (sizeof mask == 32)
     return static_cast<unsigned>(lanes == 8 ? __builtin_ia32_movmskps256(Vec<float, 8>(mask))
                                             : __builtin_ia32_movmskpd256(Vec<double, 4>(mask)));
+#endif
+#if defined(__aarch64__)
+  if constexpr (sizeof mask == 16 && lanes == 4) return vaddvq_u32(uint32x4_t(mask) & uint32x4_t{1, 2, 4, 8});
+  if constexpr (sizeof mask == 16 && lanes == 2)
+    return static_cast<unsigned>(vaddvq_u64(uint64x2_t(mask) & uint64x2_t{1, 2}));
 #endif
   unsigned set = 0;
   for (std::size_t lane = 0; lane < lanes; ++lane) set |= mask[lane] != 0 ? 1U << lane : 0U;

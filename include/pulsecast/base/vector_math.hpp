@@ -250,13 +250,19 @@ template <class V>
     for (std::size_t byte = 0; byte < sizeof(V); byte += step) {
       Vec<double, step / sizeof(double)> part;
       std::memcpy(&part, reinterpret_cast<const char*>(&x) + byte, step);
+#if __has_builtin(__builtin_elementwise_sqrt)  // clang 16 and later, which lack those of x86-64
+      part = __builtin_elementwise_sqrt(part);
+#else
 #if defined(__AVX__)
       if constexpr (step == 32) part = __builtin_ia32_sqrtpd256(part);
 #endif
 #if defined(__SSE2__)
       if constexpr (step == 16) part = __builtin_ia32_sqrtpd(part);
+#elif defined(__aarch64__)
+      part = vsqrtq_f64(part);
 #else
       for (std::size_t lane = 0; lane < step / sizeof(double); ++lane) part[lane] = std::sqrt(part[lane]);
+#endif
 #endif
       std::memcpy(reinterpret_cast<char*>(&roots) + byte, &part, step);
     }

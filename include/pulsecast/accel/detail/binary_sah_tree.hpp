@@ -210,7 +210,7 @@ class BinarySahTree {
       if (i < split.slice) left += all->counts[split.axis][i];
     }
     const std::uint32_t larger = std::max(left, task.size() - left);
-    if (task.depth + 1 + std::bit_width(larger - 1) > max_depth) return halve(task);
+    if (task.depth + 1 + static_cast<std::uint32_t>(std::bit_width(larger - 1)) > max_depth) return halve(task);
     const std::uint32_t middle = first.end = second.begin = task.begin + left;
     std::uint32_t to[2] = {task.begin, middle};
     for (std::size_t i = 0; i < parts; ++i) {
