@@ -60,7 +60,7 @@ struct DefinitionText {
   /// Adds the fields of a message type, a line each, and the message types in them that are not yet there.
   template <RosMessage M>
   constexpr void add_fields() {
-    std::string_view names = M::ros_fields;  // a comma and a blank between them
+    std::string_view names = M::ros_fields;
     const auto each = [&]<class... T>(const std::tuple<const T&...>*, const auto& use) {
       (use(static_cast<const T*>(nullptr)), ...);
     };
@@ -69,7 +69,7 @@ struct DefinitionText {
       add_type<T>();
       const std::size_t end = std::min(names.find(','), names.size());
       add(" ").add(names.substr(0, end)).add("\n");
-      names.remove_prefix(std::min(end + 2, names.size()));
+      names.remove_prefix(std::min(names.find_first_not_of(", ", end), names.size()));
     });
     each(types, [&]<class T>(const T*) { add_part<T>(); });
   }
