@@ -79,9 +79,9 @@ void drive(Report& report, const street::Scene& town, unsigned threads) {
   robot.add("spinning", spinning.source(1e6), world, spinning.receiver(), 10);
   robot.add("prisms", prisms, world, {.range_min = 0.05, .range_max = 260}, 10);
   robot.add("flat", flat.source(1e6), world, flat.receiver(), 40);
-  robot.kit.add_samples("imu", 400, [&](PulseIndex, Tick t) {
-    const ImuSample sample{.tick = t, .specific_force = robot.vehicle.at(t.seconds()).position};
-    keep(sample.specific_force.x);
+  const Imu imu{StraightLine{.to = {0, 100, 0}, .speed = 5}, Mount{.lever_arm = {0, 0, 1.9}}, stim_300(400)};
+  robot.kit.add_samples("imu", 400, [&](PulseIndex i, Tick) {
+    keep(imu.sample(i).velocity_increment.x);
     ++robot.samples;
   });
 
