@@ -29,7 +29,9 @@ namespace detail {
 /// 1971, A floating-point technique for extending the available precision; halves of Veltkamp.
 [[nodiscard, gnu::always_inline]] inline simd::Doubles product_error(const simd::Doubles& a, const simd::Doubles& b,
                                                                      const simd::Doubles& product) noexcept {
-#if defined(__FMA__)
+#if (defined(__FMA__) || defined(__aarch64__)) && __has_builtin(__builtin_elementwise_fma)  // of newer clang, which
+  return __builtin_elementwise_fma(a, b, -product);                                         // lacks that of x86-64
+#elif defined(__FMA__)
   if constexpr (sizeof(simd::Doubles) == 32) return __builtin_ia32_vfmaddpd256(a, b, -product);
 #elif defined(__aarch64__)
   return vfmaq_f64(-product, a, b);

@@ -89,6 +89,7 @@ TEST_CASE("spoilt files beside a raster are refused, or give units that a raster
     }
   }
   CHECK(accepted > 100);
+  CHECK(accepted + refused == 400);
   CHECK(read("", std::string(3000000, '"')).warnings.empty());
   CHECK(read("", "<SRS>" + std::string(9000000, '&')).reference.wkt.empty());
 }
