@@ -1,9 +1,9 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
 
-// Lidar odometry by PCL's generalized ICP, on what unbag.mjs read from a bag: each scan against a map of the last ten.
-// Prints its drift: distance of its end from the truth's, by the length of the path [%].
-// Usage: odometry FOLDER WAY, where WAY is
+// Lidar odometry by PCL's generalized ICP, on what unbag.mjs read from a bag: each scan against a map of the last
+// three. Prints its drift: distance of its end from the truth's, by the length of the path [%]. Usage: odometry FOLDER
+// WAY, where WAY is
 //   scanned: points as they are;
 //   undone: motion within a scan undone, rotation by the gyroscopes, translation by the odometry's last velocity, to
 //   the
@@ -33,9 +33,9 @@ namespace {
 using Cloud = pcl::PointCloud<pcl::PointXYZ>;
 using Pose = Eigen::Isometry3d;
 
-constexpr double leaf = 0.4;        ///< of the grids that thin clouds out [m]
-constexpr double scan_time = 0.1;   ///< [s]
-constexpr std::size_t window = 10;  ///< scans in the map
+constexpr double leaf = 0.5;       ///< of the grids that thin clouds out [m]
+constexpr double scan_time = 0.1;  ///< [s]
+constexpr std::size_t window = 3;  ///< scans in the map
 
 struct Scan {
   double stamp = 0;                             ///< [s]
