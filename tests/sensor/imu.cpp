@@ -497,6 +497,9 @@ TEST_CASE("samples are found by time") {
     }
     CHECK(imu.sample_from({std::int64_t{1} << 60, 0}) == PulseIndex{1} << 52);
   }
+  const Imu imu_of_kit{Tripod{}, Mount{}, {.sample_rate = 400}};
+  CHECK(imu_of_kit.sample(0).middle() == Tick::of(1, 800));
+  CHECK(imu_of_kit.sample(799).middle() == Tick::of(1599, 800));
 }
 
 // ------------------------------------------------------------------------------------- other errors
