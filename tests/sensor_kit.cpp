@@ -344,6 +344,36 @@ TEST_CASE("a kit refuses a step backwards, rates out of range, names that it has
       "sensor 'old' has a survey that finds no slots: expected a source with slot_from(tick)", SettingError);
 }
 
+TEST_CASE("callbacks may add sensors and throw, and begin no step; a sink may add sensors") {
+  SensorKit kit;
+  Log log;
+  int calls = 0;
+  kit.add_samples("clock", 10, [&](PulseIndex i, Tick t) {
+    ++calls;
+    CHECK_THROWS_WITH_AS(kit.step(t + Tick{1, 0}), doctest::Contains("is called in a step"), SettingError);
+    if (i == 1) throw std::runtime_error("mine");
+  });
+  struct Adds {
+    SensorKit* kit;
+    int scans = 0;
+    void begin_scan(Tick) {
+      for (int k = 0; k < 20; ++k)
+        kit->add_samples("late" + std::to_string(scans) + "," + std::to_string(k), 7, [](PulseIndex, Tick) {});
+      ++scans;
+    }
+    void operator()(const EchoBatch&) const {}
+  };
+  const Platform platform{Circle{}, Mount{}, flat.source(60)};
+  int scans = 0;
+  kit.add_scans("adds", Survey{platform, SingleRay{}, room, Receiver{}, FirstHit{}}, 10, Adds{&kit},
+                [&](const Adds&) { ++scans; });
+  CHECK_THROWS_WITH_AS(kit.step({1, 0}), "mine", std::runtime_error);
+  CHECK(calls == 2);
+  kit.step({1, 0});
+  CHECK(calls == 11);
+  CHECK(scans == 10);
+}
+
 TEST_CASE("an error of a sensor's pose ends the step, as it ends a run") {
   Log log;
   SensorKit kit;

@@ -54,6 +54,9 @@ class SensorKit {
   /// steps soon allocate nothing. @throws SettingError for an earlier time than the
   /// kit's @throws std::runtime_error as `run`; the kit is then of no use
   void step(Tick until, const Workers& workers = {}) {
+    if (busy_)
+      throw SettingError("SensorKit::step",
+                         " is called in a step, or after one whose simulation failed: expected none");
     if (until < time_)
       throw_setting_error("SensorKit::step (until)", until.seconds(), "s",
                           text::joined({"at least ", text::to_text(time_.seconds()), ", the time of the last step"}));
@@ -61,9 +64,11 @@ class SensorKit {
       Tick end = until;  // a sink holds one scan, which is passed on before the next begins
       for (const auto& sensor : sensors_)
         if (sensor->scans) end = std::min(end, sensor->due());
-      for (const auto& sensor : sensors_)
-        sensor->simulate(end, {.threads = workers.count(), .executor = workers.executor()});
+      busy_ = true;                                      // for ever, if a run fails
+      for (std::size_t k = 0; k < sensors_.size(); ++k)  // a sink may add sensors
+        sensors_[k]->simulate(end, {.threads = workers.count(), .executor = workers.executor()});
       time_ = end;
+      const Delivery delivery{busy_};
       while (Sensor* const next = next_due()) next->deliver();
     } while (time_ < until);
   }
@@ -71,6 +76,12 @@ class SensorKit {
   [[nodiscard]] Tick time() const noexcept { return time_; }  ///< up to which it was stepped
 
  private:
+  /// Ends that a kit is busy, also by an exception of the user's.
+  struct Delivery {
+    bool& busy;
+    ~Delivery() { busy = false; }
+  };
+
   struct Sensor {
     std::string name;
     double rate;
@@ -152,6 +163,7 @@ class SensorKit {
   }
 
   Tick time_;
+  bool busy_ = false;
   std::vector<std::unique_ptr<Sensor>> sensors_;  // in the order of adding
 };
 

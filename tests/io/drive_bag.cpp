@@ -97,6 +97,20 @@ TEST_CASE("messages are in order of the times when they were complete, and then 
   }
 }
 
+TEST_CASE("a bag does not go back, and points with the time by the clock have its clock") {
+  const TemporaryFolder folder;
+  DriveBag bag(folder / "a.mcap", 1000);
+  const auto points = bag.add<ros::PointCloud2>("/points", "lidar");
+  bag.advance({5, 0});
+  bag.advance({5, 0});
+  CHECK_THROWS_WITH_AS(bag.advance({3, 0}), doctest::Contains("DriveBag::advance (end) is 3 s"), SettingError);
+  bag.write(points, PointBuffer(layouts::velodyne()), {6, 0});
+  bag.write(points, PointBuffer(layouts::hesai(), {.start_time = 1000}), {6, 0});
+  for (const PointLayout& layout : {layouts::hesai(), layouts::livox()})
+    CHECK_THROWS_WITH_AS(bag.write(points, PointBuffer(layout), {6, 0}),
+                         "PointSettings::start_time is 0 s, but must be that of the bag, 1000", SettingError);
+}
+
 TEST_CASE("all fixed frames are in one message, which reaches late subscribers") {
   const TemporaryFolder folder;
   DriveBag bag(folder / "a.mcap", 1000);

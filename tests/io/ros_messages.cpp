@@ -270,6 +270,9 @@ TEST_CASE("transforms map points in axes x forward, y left, z up as poses map th
     const ros::Transform fixed = ros::transform_of(mount);
     const Vec3 expected = to_forward_left_up(mount.point(from_forward_left_up(point)));
     CHECK(length(turned(fixed.rotation, point) + vec3(fixed.translation) - expected) < 1e-13);
+    const ros::Transform back = ros::transform_of(body.inverse());  // from a point of the world
+    const Vec3 in_body = to_forward_left_up(body.inverse().point(point));
+    CHECK(length(turned(back.rotation, point) + vec3(back.translation) - in_body) < 1e-13);
   }
   const ros::Transform east = ros::transform_of(Pose<frame::Body, frame::World>{level(pi / 2), {1, 2, 3}});
   CHECK(std::fabs(east.rotation.w) == doctest::Approx(1));  // x forward is x east
@@ -319,9 +322,12 @@ TEST_CASE("a sweep has a range a beam, and infinity for those without a return")
                        doctest::Contains("'range'"), SettingError);
 }
 
+/// Sensor that stands at the origin.
+Pose<frame::Instrument, frame::World> at_origin(Tick) { return {}; }
+
 TEST_CASE("a depth image has the way along the forward axis, in either axes, and infinity for misses") {
   for (const PointAxes axes : {PointAxes::right_forward_up, PointAxes::forward_left_up}) {
-    PointBuffer points(layouts::xyzi(), {.axes = axes}, {.rows = 2, .columns = 3});
+    PointBuffer points(layouts::xyzi(), {.sensor = at_origin, .axes = axes}, {.rows = 2, .columns = 3});
     points.begin_scan({});
     add(points, shot(12 + 1, {}), {.range = 5});
     add(points, shot(12 + 5, {}, 0, 1, pi / 3), {.range = 8});
@@ -337,6 +343,8 @@ TEST_CASE("a depth image has the way along the forward axis, in either axes, and
   }
   std::vector<float> memory;
   CHECK_THROWS_AS(static_cast<void>(ros::depth_image_of(PointBuffer(layouts::xyzi()), memory)), SettingError);
+  CHECK_THROWS_WITH_AS(static_cast<void>(ros::depth_image_of(PointBuffer(layouts::xyzi(), {}, {1, 1}), memory)),
+                       doctest::Contains("PointSettings::sensor"), SettingError);
   CHECK_THROWS_AS(static_cast<void>(ros::depth_image_of(PointBuffer(ros::sweep_layout(), {}, {1, 1}), memory)),
                   SettingError);
 }
@@ -366,6 +374,14 @@ TEST_CASE("points of a Livox lie in memory as the message has them") {
   }
   CHECK_THROWS_WITH_AS(static_cast<void>(ros::livox_of(PointBuffer(layouts::livox()))),
                        doctest::Contains("'offset_time'"), SettingError);
+  CHECK_THROWS_WITH_AS(static_cast<void>(ros::livox_of(PointBuffer(ros::livox_layout(), {}, {1, 4}))),
+                       doctest::Contains("PointGrid::rows, as a CustomMsg is 1"), SettingError);
+  PointLayout other = ros::livox_layout();
+  other.fields[0].type = NumberType::float32;
+  CHECK_THROWS_WITH_AS(static_cast<void>(ros::livox_of(PointBuffer(other))), doctest::Contains("type and offset"),
+                       SettingError);
+  add(scan, shot(9, {104, 0.6}), {.range = 1});
+  CHECK_THROWS_WITH_AS(static_cast<void>(ros::livox_of(scan)), doctest::Contains("is 4.294967295 s"), SettingError);
   PointLayout longer = ros::livox_layout();
   longer.size = 24;
   CHECK_THROWS_WITH_AS(static_cast<void>(ros::livox_of(PointBuffer(longer))), doctest::Contains("from 20 to 20"),

@@ -77,6 +77,29 @@ TEST_CASE("a joint may mimic another, and an axis may have any length") {
   CHECK(near(robot.mount("right").lever_arm, {0.4, 0, 0}));
 }
 
+TEST_CASE("joints mimic one another in chains, and not in circles") {
+  const support::TemporaryFolder folder;
+  const auto finger = [](const std::string& parent, const std::string& child, const std::string& mimic) {
+    return "<link name=\"" + child + "\"/><joint name=\"" + child + "_joint\" type=\"prismatic\"><parent link=\"" +
+           parent + "\"/><child link=\"" + child + "\"/><axis xyz=\"1 0 0\"/>" +
+           "<limit lower=\"-9\" upper=\"9\" effort=\"1\" velocity=\"1\"/>" + mimic + "</joint>";
+  };
+  const std::string base = "<robot name=\"hand\"><link name=\"base\"/>";
+  const auto chain = folder.write(
+      "chain.urdf", base + finger("base", "a", "") +
+                        finger("base", "b", R"(<mimic joint="a_joint" multiplier="2" offset="0.1"/>)") +
+                        finger("base", "c", R"(<mimic joint="b_joint" multiplier="3" offset="0"/>)") + "</robot>");
+  const io::RobotFrames robot = io::read_urdf(chain, {{"a_joint", 0.5}});
+  CHECK(near(robot.mount("b").lever_arm, {0, 1.1, 0}));
+  CHECK(near(robot.mount("c").lever_arm, {0, 3.3, 0}));
+  CHECK_THROWS_WITH_AS(static_cast<void>(io::read_urdf(chain, {{"b_joint", 0.5}})),
+                       doctest::Contains("is 'b_joint', which does not move"), SettingError);
+  const auto circle = folder.write("circle.urdf", base + finger("base", "a", R"(<mimic joint="b_joint"/>)") +
+                                                      finger("base", "b", R"(<mimic joint="a_joint"/>)") + "</robot>");
+  CHECK_THROWS_WITH_AS(static_cast<void>(io::read_urdf(circle)), doctest::Contains("expected another joint"),
+                       FileError);
+}
+
 TEST_CASE("unknown links and joints are refused with the name that was meant, and values beyond the limits") {
   const io::RobotFrames robot = io::read_urdf(forklift);
   CHECK_THROWS_WITH_AS(static_cast<void>(robot.mount("lidar_lnk")),

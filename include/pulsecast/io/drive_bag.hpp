@@ -64,6 +64,10 @@ class DriveBag {
   }
   /// Appends a scan, complete at a tick.
   void write(const BagTopic<ros::PointCloud2>& topic, const PointBuffer& scan, const Tick& complete) {
+    const auto tells_clock = [](const PointField& field) { return field.column->name == "clock"; };
+    if (scan.settings().start_time != start_time_ && std::ranges::any_of(scan.layout().fields, tells_clock))
+      throw SettingError("PointSettings::start_time", scan.settings().start_time, "s",
+                         text::joined({"that of the bag, ", text::to_text(start_time_)}));
     detail::serialize_points(scan, header(scan.scan_start(), topic.frame_id), message_);
     keep(topic.channel, scan.scan_start(), complete);
   }
@@ -75,6 +79,8 @@ class DriveBag {
 
   /// Writes all messages complete up to `end`, before which no other may come, and this to `/clock`.
   void advance(const Tick& end) {
+    if (stamp(end) < end_)
+      throw SettingError("DriveBag::advance (end)", end.seconds(), "s", "not before that of the last advance");
     put_until(end_ = stamp(end));
     ros::serialize(ros::Clock{ros::Time::of(end_)}, message_);
     file_.write(clock_.channel, end_, end_, message_);

@@ -48,8 +48,8 @@ inline void write_kitti_poses(const std::filesystem::path& path, std::span<const
   Pose<frame::World, frame::Body> first;
   for (std::size_t i = 0; i < poses.size(); ++i) {
     const Pose<frame::Body, frame::World> pose{unit(poses[i].rotation), poses[i].position};
-    if (!pose.finite())
-      throw FileError(path.string(), text::message("pose ", i), "cannot be written: expected finite numbers");
+    if (!pose.finite() || !(length(poses[i].rotation) > 0))
+      throw FileError(path.string(), text::message("pose ", i), "cannot be written: expected a finite pose");
     if (i == 0) first = pose.inverse();
     detail::add_kitti_pose(file, first * pose);
   }

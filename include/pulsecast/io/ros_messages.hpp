@@ -190,8 +190,8 @@ struct CustomMsg {
 template <class From, class To>
 [[nodiscard]] Transform transform_of(const pulsecast::Pose<From, To>& pose) noexcept {
   const Rotation own = rotation_about(axis::up, pi / 2);  // from x forward, y left to x right, y forward
-  const bool in_world = std::is_same_v<To, frame::World>;
-  const Rotation q = (in_world ? no_rotation : conjugate(own)) * pose.rotation * own;
+  constexpr bool of_world = std::is_same_v<From, frame::World>, in_world = std::is_same_v<To, frame::World>;
+  const Rotation q = (in_world ? no_rotation : conjugate(own)) * pose.rotation * (of_world ? no_rotation : own);
   const Vec3 p = pose.position;
   return {in_world ? Vector3{p.x, p.y, p.z} : vector_of(p), {q.x, q.y, q.z, q.w}};
 }
@@ -278,11 +278,13 @@ inline constexpr float no_return = std::numeric_limits<float>::infinity();  ///<
 }
 
 /// Depths of the points of a grid, whose layout begins with x, y, z: metres along the forward axis, +infinity without a
-/// return (ROS REP 118), in `memory`. @throws SettingError for another layout, or without a grid
+/// return (ROS REP 118), in `memory`. @throws SettingError for another layout, or without a grid or sensor
 [[nodiscard]] inline Image depth_image_of(const PointBuffer& points, std::vector<float>& memory) {
   const auto [rows, columns, rate] = points.grid();
   require_within("PointGrid::rows, as an Image", rows, 1, 1e6, "");
   detail::require_fields(points.layout(), {"x", "y"});
+  if (!points.settings().sensor)
+    throw SettingError("PointSettings::sensor (poses)", 0, "", "1, for depths in the frame of a sensor");
   const bool x_is_forward = points.settings().axes == PointAxes::forward_left_up;
   memory.resize(points.size());
   detail::take_numbers(points, points.layout().fields[x_is_forward ? 0 : 1], detail::no_return, memory.data());
@@ -300,13 +302,26 @@ inline constexpr float no_return = std::numeric_limits<float>::infinity();  ///<
   return layout;
 }
 
-/// Message of a scan in a `livox_layout()`, which it refers to. @throws SettingError for another layout
+/// Message of a scan in a `livox_layout()`, which it refers to. @throws SettingError for another layout, a grid, or a
+/// scan of 2^32 ns (4.3 s) and more
 [[nodiscard]] inline CustomMsg livox_of(const PointBuffer& scan) {
   detail::require_fields(scan.layout(), {"offset_time", "x", "y", "z", "reflectivity", "tag", "line"});
   require_within("PointLayout::size, as a CustomMsg", scan.layout().size, sizeof(CustomPoint), sizeof(CustomPoint),
                  "byte");
-  const auto* const points = reinterpret_cast<const CustomPoint*>(scan.records().data());
-  return {.point_num = static_cast<std::uint32_t>(scan.size()), .points = {points, scan.size()}};
+  require_within("PointGrid::rows, as a CustomMsg", scan.grid().rows, 0, 0, "");
+  constexpr std::array<std::uint32_t, 7> places{0, 4, 8, 12, 16, 17, 18};
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    const PointField& field = scan.layout().fields[i];
+    const NumberType type = i == 0 ? NumberType::uint32 : i < 4 ? NumberType::float32 : NumberType::uint8;
+    if (field.offset != places[i] || field.type != type)
+      throw SettingError("PointLayout::fields (index)", static_cast<double>(i), "",
+                         text::joined({"'", field.name, "' with type and offset of livox_layout()"}));
+  }
+  const std::span points(reinterpret_cast<const CustomPoint*>(scan.records().data()), scan.size());
+  constexpr std::uint32_t last = std::numeric_limits<std::uint32_t>::max();
+  if (std::ranges::find(points, last, &CustomPoint::offset_time) != points.end())
+    throw SettingError("PointBuffer (time after the start of the scan)", 1e-9 * last, "s", "less, as a CustomMsg");
+  return {.point_num = static_cast<std::uint32_t>(scan.size()), .points = points};
 }
 
 }  // namespace PULSECAST_NAMESPACE::io::ros

@@ -73,20 +73,31 @@ class UrdfErrors : public console_bridge::OutputHandler {
   return {Rotation{turn.w, axis.x, axis.y, axis.z}, from_forward_left_up(position)};
 }
 
-/// Value of a joint, or of the one that it mimics [rad] or [m].
-[[nodiscard]] inline double value_of(const urdf::Joint& joint, const std::map<std::string, double>& values) {
-  const auto found = values.find(joint.mimic ? joint.mimic->joint_name : joint.name);
-  const double value = found == values.end() ? 0 : found->second;
-  return joint.mimic ? joint.mimic->multiplier * value + joint.mimic->offset : value;
+/// Value of a joint, by those that it mimics, one after another [rad] or [m]. @throws FileError if they mimic in a
+/// circle
+[[nodiscard]] inline double value_of(const urdf::ModelInterface& robot, const urdf::Joint& joint,
+                                     const std::map<std::string, double>& values, const std::string& path) {
+  double factor = 1, offset = 0;
+  const urdf::Joint* at = &joint;
+  for (std::size_t i = 0; at->mimic; ++i) {
+    offset += factor * at->mimic->offset;
+    factor *= at->mimic->multiplier;
+    const auto next = robot.joints_.find(at->mimic->joint_name);
+    if (next == robot.joints_.end() || i > robot.joints_.size())
+      throw FileError(path, "",
+                      text::joined({"has joint '", joint.name, "', which mimics ", at->mimic->joint_name,
+                                    ": expected another joint of the robot"}));
+    at = next->second.get();
+  }
+  const auto found = values.find(at->name);
+  return factor * (found == values.end() ? 0 : found->second) + offset;
 }
 
 /// Pose of the child of a joint in its parent. Source: URDF specification, joint: origin, then motion about the axis.
-[[nodiscard]] inline Pose<frame::Body, frame::Body> pose_of(const urdf::Joint& joint,
-                                                            const std::map<std::string, double>& values) {
+[[nodiscard]] inline Pose<frame::Body, frame::Body> pose_of(const urdf::Joint& joint, double value) {
   const auto& [place, turn] = joint.parent_to_joint_origin_transform;
   const auto origin = pose_of(Vec3{place.x, place.y, place.z}, Rotation{turn.w, turn.x, turn.y, turn.z});
   const Vec3 axis = normalize(from_forward_left_up({joint.axis.x, joint.axis.y, joint.axis.z}));
-  const double value = value_of(joint, values);
   if (joint.type == urdf::Joint::PRISMATIC) return origin * Pose<frame::Body, frame::Body>{no_rotation, value * axis};
   if (joint.type == urdf::Joint::REVOLUTE || joint.type == urdf::Joint::CONTINUOUS)
     return origin * Pose<frame::Body, frame::Body>{rotation_about(axis, value), {}};
@@ -125,6 +136,7 @@ class UrdfErrors : public console_bridge::OutputHandler {
   for (const auto& [name, joint] : robot->joints_) {
     const bool turns = joint->type == urdf::Joint::REVOLUTE || joint->type == urdf::Joint::CONTINUOUS;
     if (!turns && joint->type != urdf::Joint::PRISMATIC) continue;
+    if (joint->mimic) continue;  // moved by others
     moving.push_back(name);
     const auto value = joint_values.find(name);
     if (value == joint_values.end()) continue;
@@ -143,7 +155,9 @@ class UrdfErrors : public console_bridge::OutputHandler {
       open.push_back(child);
       const urdf::Joint& joint = *child->parent_joint;
       const bool is_fixed = joint.type == urdf::Joint::FIXED;
-      frames.links.push_back({open[i]->name, child->name, detail::pose_of(joint, joint_values), is_fixed});
+      frames.links.push_back({open[i]->name, child->name,
+                              detail::pose_of(joint, detail::value_of(*robot, joint, joint_values, path.string())),
+                              is_fixed});
       if (!frames.links.back().pose.rigid())
         throw FileError(path.string(), "",
                         text::joined({"has joint '", joint.name, "' without a direction: expected an axis"}));
