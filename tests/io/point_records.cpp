@@ -379,6 +379,8 @@ TEST_CASE("a grid has rings by columns, the first echo of a pulse, and NaN or 0 
   add_shot(points, {.tick = {6, 0.95}, .direction = axis::forward, .channel = 0, .echoes = 1}, 10);  // nor before
   add_shot(points, {.tick = {7, 0.1}, .direction = axis::forward, .channel = 2, .echoes = 1}, 10);   // no row
   CHECK(points.echoes_left_out() == 5);
+  add_shot(points, {.tick = {7, 0.01}, .direction = axis::forward, .channel = 0, .echoes = 2}, 90);  // a taken place
+  CHECK(points.echoes_left_out() == 7);
   CHECK((range(3) == 10 && std::isnan(range(0)) && std::isnan(range(5))));
 }
 

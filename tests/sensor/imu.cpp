@@ -525,6 +525,14 @@ TEST_CASE("rates are rounded to steps, and scaled and mixed before") {
   CHECK(length(s.angle_increment - Vec3{0.014, 0, 0.77} / 400.0) < 1e-12);
   CHECK(s.specific_force.z == relative(9.81, 1e-12));
   CHECK(s.specific_force.x == relative(-3.92, 1e-12));
+  for (int k = 0; k < 3; ++k) {
+    const double steps = s.velocity_increment[k] * 400 / 0.01;
+    CHECK(std::fabs(steps - std::round(steps)) < 1e-9);
+  }
+  settings.gyroscope.range = 1;
+  settings.gyroscope.resolution = 0.6;  // beyond the range after rounding, too
+  settings.gyroscope.bias = {0.95, 0, 0};
+  CHECK(Imu{Tripod{}, Mount{}, settings}.sample(3).angular_rate.x == 1);
 }
 
 TEST_CASE("rounded increments keep their sums to half a step") {

@@ -233,13 +233,14 @@ class PointEncoder {
   Frame frame_{};  // of a scan without distortion
 };
 
-/// Grid of the points of a scan, one place a pulse, row by row; the first echo of a pulse takes its place. A point
-/// without an echo has NaN in each field of floating point, and 0 in integers.
+/// Grid of the points of a scan, one place a pulse, row by row; the first echo of the first pulse takes its place. A
+/// point without an echo has NaN in each field of floating point, and 0 in integers.
 struct PointGrid {
   std::uint32_t rows = 0;     ///< number of rows, as of rings; 0: no grid
   std::uint32_t columns = 0;  ///< number of columns
-  /// Columns a second: the row is the ring, the column counts from the scan's start. 0: pulses fill rows, as of a
-  /// pixel array, from a slot that is a multiple of their number [Hz]
+  /// Columns a second: the row is the ring, the column counts from the scan's start, so that a column is a firing
+  /// sequence if a scan has a whole number of them. 0: pulses fill rows, as of a pixel array, from a slot that is a
+  /// multiple of their number [Hz]
   double column_rate = 0;
 
   void validate() const {
@@ -274,7 +275,7 @@ class PointBuffer {
   }
 
   [[nodiscard]] const PointGrid& grid() const noexcept { return grid_; }
-  /// Echoes of all scans without a place in the grid.
+  /// Echoes of all scans without a place in the grid, or whose place was taken.
   [[nodiscard]] std::uint64_t echoes_left_out() const noexcept { return left_out_; }
   [[nodiscard]] std::size_t size() const noexcept { return records_.size() / layout().size; }
   /// Records, one after another.
@@ -292,7 +293,8 @@ class PointBuffer {
   /// Drops all points; fills a grid with those of misses.
   void clear() {
     records_.clear();
-    records_.resize(std::size_t{grid_.rows} * grid_.columns * layout().size);
+    taken_.assign(std::size_t{grid_.rows} * grid_.columns, false);
+    records_.resize(taken_.size() * layout().size);
     for (const PointField& field : layout().fields)
       for (std::size_t at = field.offset; at < records_.size(); at += layout().size)
         detail::visit_number_type(field.type, [&]<class Number>() {
@@ -311,14 +313,16 @@ class PointBuffer {
       column = std::floor(detail::scan_time(view) * grid_.column_rate + 1e-6);  // rounded times are of their column
     }
     const bool inside = row < grid_.rows && column >= 0 && (column < grid_.columns || grid_.column_rate == 0);
-    left_out_ += shot.echoes - (inside ? 1 : 0);
-    const auto at = static_cast<std::size_t>(row * grid_.columns + column);
-    if (inside) encoder_.store(batch, shot, echo, records_.data() + at * layout().size);
+    const std::size_t at = inside ? static_cast<std::size_t>(row * grid_.columns + column) : 0;
+    const bool free = inside && !std::exchange(taken_[at], true);
+    left_out_ += shot.echoes - (free ? 1 : 0);
+    if (free) encoder_.store(batch, shot, echo, records_.data() + at * layout().size);
   }
 
   PointEncoder encoder_;
   PointGrid grid_;
   std::vector<std::byte> records_;
+  std::vector<bool> taken_;     // places of the grid
   std::uint64_t left_out_ = 0;  // echoes without a place
 };
 static_assert(EchoSink<PointBuffer>);
