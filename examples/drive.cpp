@@ -2,8 +2,7 @@
 // SPDX-License-Identifier: MIT
 
 // A robot drives through a small town, with a lidar, a flat scanner and an inertial sensor. Writes a bag of ROS 2 with
-// frames and truth, drive.mcap, and truth.tum. A seed gives the same bag on any number of threads. See
-// docs/robotics.md.
+// frames and truth, drive.mcap. A seed gives the same bag on any number of threads. docs/robotics.md tells its topics.
 
 #include <cmath>
 #include <cstdint>

@@ -293,7 +293,7 @@ class PointBuffer {
   /// Drops all points; fills a grid with those of misses.
   void clear() {
     records_.clear();
-    taken_.assign(std::size_t{grid_.rows} * grid_.columns, false);
+    taken_.assign(std::size_t{grid_.rows} * grid_.columns, 0);
     records_.resize(taken_.size() * layout().size);
     for (const PointField& field : layout().fields)
       for (std::size_t at = field.offset; at < records_.size(); at += layout().size)
@@ -314,7 +314,7 @@ class PointBuffer {
     }
     const bool inside = row < grid_.rows && column >= 0 && (column < grid_.columns || grid_.column_rate == 0);
     const std::size_t at = inside ? static_cast<std::size_t>(row * grid_.columns + column) : 0;
-    const bool free = inside && !std::exchange(taken_[at], true);
+    const bool free = inside && std::exchange(taken_[at], char{1}) == 0;
     left_out_ += shot.echoes - (free ? 1 : 0);
     if (free) encoder_.store(batch, shot, echo, records_.data() + at * layout().size);
   }
@@ -322,7 +322,7 @@ class PointBuffer {
   PointEncoder encoder_;
   PointGrid grid_;
   std::vector<std::byte> records_;
-  std::vector<bool> taken_;     // places of the grid
+  std::vector<char> taken_;     // a place of the grid: 0 or 1
   std::uint64_t left_out_ = 0;  // echoes without a place
 };
 static_assert(EchoSink<PointBuffer>);
