@@ -142,11 +142,12 @@ TEST_CASE("a member without effect on a kind of sensor is refused by its name") 
   head.lasers = {SensorLaser{}};
   const std::vector<std::pair<std::string, SensorSheet>> kinds{
       {"view", flat(10)}, {"sweeps", swept()}, {"prisms", rosette()}, {"head", head}};
-  for (const auto& [kind, sheet] : kinds)
+  for (const auto& named : kinds)
     for (const Member& member : members) {
+      const std::string& kind = named.first;
       CAPTURE(kind);
       CAPTURE(member.name);
-      SensorSheet changed = sheet;
+      SensorSheet changed = named.second;
       member.set(changed);
       if (kind == "view" && std::string(member.name) == "SensorSheet::sweep_rate") {  // sweeps, with limits of azimuth
         CHECK_THROWS_WITH_AS(changed.validate(), doctest::Contains("SensorSheet::azimuth_min"), SettingError);
