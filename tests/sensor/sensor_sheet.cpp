@@ -5,6 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include <doctest/doctest.h>
 
@@ -27,7 +30,8 @@ SensorSheet flat(double rotation_rate) {
 }
 
 SensorSheet swept() {
-  SensorSheet sheet = flat(10);
+  SensorSheet sheet;
+  sheet.lasers = {SensorLaser{}};
   sheet.sequence_rate = 200e3;
   sheet.sweep_rate = 1007;
   sheet.elevation_min = -7_deg;
@@ -115,6 +119,47 @@ TEST_CASE("every kind of sensor keeps the laws of sources, and finds slots by ti
   }
 }
 
+TEST_CASE("a member without effect on a kind of sensor is refused by its name") {
+  struct Member {
+    const char* name;
+    void (*set)(SensorSheet&);
+    std::string used_by;  // of the kinds below
+  };
+  const std::vector<Member> members{
+      {"SensorSheet::sweep_rate", [](SensorSheet& s) { s.sweep_rate = 5; },
+       "view, sweeps, head"},  // makes sweeps of it
+      {"SensorSheet::elevation_min", [](SensorSheet& s) { s.elevation_min = -0.1; }, "sweeps"},
+      {"SensorSheet::elevation_max", [](SensorSheet& s) { s.elevation_max = 0.9; }, "sweeps"},
+      {"SensorSheet::azimuth_min", [](SensorSheet& s) { s.azimuth_min = -0.1; }, "view, head"},  // makes a view of it
+      {"SensorSheet::azimuth_max", [](SensorSheet& s) { s.azimuth_max = 0.1; }, "view, head"},
+      {"SpinningSensor::start", [](SensorSheet& s) { s.start = 0.1; }, "head"},
+      {"SpinningSensor::exit_radius", [](SensorSheet& s) { s.exit_radius = 0.1; }, "head"},
+      {"SensorLaser::height", [](SensorSheet& s) { s.lasers.back().height = 0.1; }, "head"},
+      {"SensorLaser::elevation", [](SensorSheet& s) { s.lasers.back().elevation = 0.1; }, "head, prisms"},
+      {"SensorLaser::azimuth", [](SensorSheet& s) { s.lasers.back().azimuth = 0.1; }, "head, prisms"},
+      {"SensorLaser::delay", [](SensorSheet& s) { s.lasers.back().delay = 2e-6; }, "head, prisms"}};
+  SensorSheet head;
+  head.lasers = {SensorLaser{}};
+  const std::vector<std::pair<std::string, SensorSheet>> kinds{
+      {"view", flat(10)}, {"sweeps", swept()}, {"prisms", rosette()}, {"head", head}};
+  for (const auto& named : kinds)
+    for (const Member& member : members) {
+      const std::string& kind = named.first;
+      CAPTURE(kind);
+      CAPTURE(member.name);
+      SensorSheet changed = named.second;
+      member.set(changed);
+      if (kind == "view" && std::string(member.name) == "SensorSheet::sweep_rate") {  // sweeps, with limits of azimuth
+        CHECK_THROWS_WITH_AS(changed.validate(), doctest::Contains("SensorSheet::azimuth_min"), SettingError);
+      } else if (member.used_by.find(kind) != std::string::npos) {
+        CHECK_NOTHROW(changed.validate());
+      } else {
+        CHECK_THROWS_WITH_AS(changed.validate(),
+                             doctest::Contains((std::string(member.name) + " has no effect").c_str()), SettingError);
+      }
+    }
+}
+
 TEST_CASE("sheets without meaning are refused") {
   const auto refused = [](SensorSheet sheet, auto change, const char* part) {
     change(sheet);
@@ -122,10 +167,6 @@ TEST_CASE("sheets without meaning are refused") {
   };
   refused(
       flat(10), [](SensorSheet& s) { s.lasers.push_back({}); }, "lasers (number with sweeps");
-  refused(
-      flat(10), [](SensorSheet& s) { s.lasers[0].elevation = 0.1; }, "of a swept laser");
-  refused(
-      flat(10), [](SensorSheet& s) { s.start = 0.1; }, "of a swept laser");
   refused(
       flat(10), [](SensorSheet& s) { s.azimuth_max = -2; }, "SensorSheet::azimuth_max");
   refused(
@@ -138,6 +179,9 @@ TEST_CASE("sheets without meaning are refused") {
       rosette(), [](SensorSheet& s) { s.prisms[0].wedge = 2; }, "Prism::wedge");
   refused(
       rosette(), [](SensorSheet& s) { s.lasers[0].delay = 1e-5; }, "Channels::channels");
+  refused(
+      rosette(), [](SensorSheet& s) { s.prisms[0].wedge = s.prisms[1].wedge = 80_deg; },
+      "Prism::wedge reflects all beams: expected a smaller one");
   CHECK_THROWS_AS(static_cast<void>(flat(10).source(-1)), SettingError);
 }
 
