@@ -30,6 +30,7 @@ take() {
   take whole_surveys --rounds 5
   take batch --rounds 5
   take robots
+  take robot_kit
   take write --rounds 5
   take scale --rounds 5
   take short_cuts
@@ -49,6 +50,7 @@ scans=$(of robot 'scans per second' --scans 300) step=$(of robot_loop 'ms, the l
 {
   printf '| what | measured on %s, load %s | command |\n|---|---|---|\n' "$day" "$load"
   sed -nE 's/^\| `(ten VLP-16[^`]*)` \| ([^ ]+) \| ([^ ]+) \| .*/| \1, 2.9 million pulses a second | \2 times real time, the slowest second \3 | `bench_robots` |/p' "$tables"
+  sed -nE 's/^\| `kit, 2 threads` \| ([^ ]+) \| [^|]+ \| [^|]+ \| ([^ ]+) \| .*/| a VLP-16, prisms at 200 kHz, a flat scanner and an inertial sensor at 400 Hz, 12 moving cars, 100 steps a second, two threads | \1 times real time, \2 allocations a step | `bench_robot_kit` |/p' "$tables"
   printf '| whole turns of 32 x 1,024 pulses to point records, 300 along the street | %.0f scans/s | `robot` |\n' "$scans"
   printf '| a step of 20 cars and a sixth of a turn, 4,822 pulses | %.1f ms | `robot_loop` |\n' "$step"
   sed -nE 's/^\| `(street, [0-9]+ poses, [^`]*)` \| ([^ ]+) \| .*/| \1, as a batch | \2 scans\/s | `bench_batch` |/p' "$tables"

@@ -63,7 +63,7 @@ struct Robot {
 };
 
 void drive(Report& report, const street::Scene& town, unsigned threads) {
-  const std::string name = std::to_string(threads) + " threads";
+  const std::string name = "kit, " + std::to_string(threads) + " threads";
   if (!report.wanted(name)) return;
   std::vector<traffic::Vehicle> cars = traffic::cars(12, street::Dice(1, 7));
   std::vector<Placement> placements;
