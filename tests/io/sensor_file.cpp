@@ -416,7 +416,6 @@ TEST_CASE("damaged sheets are refused with path, line and key") {
   check(sound + "left_out: {noise: all}\n", "left_out is no list");
   check(sound + "left_out: noise\n", "left_out is no list");
   check(sound + "left_out: [[noise]]\n", "a key is a list or map");
-  check(sound + "---\nname: other\n", "line 16: begins a second document: expected one");
   check(with(sound, "period_us: 50", "columns: [1024, 1080.5]"), "line 8: firing.columns are no whole numbers");
   check(with(sound, "period_us: 50", "columns: [1024]\n  rate_max_hz: 10000"),
         "line 9: firing.rate_max_hz is '10000': expected a number from 10240");

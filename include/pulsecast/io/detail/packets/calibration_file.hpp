@@ -18,9 +18,7 @@ class CalibrationFile {
     if (file.size() > InputFile::block_size) file.fail(text::joined({"is longer than 1 MiB: expected ", expected}));
     const std::string text = file.take_rest();
     try {
-      const std::vector<YAML::Node> documents = YAML::LoadAll(text);
-      if (documents.size() > 1) fail(documents[1], "begins a second document: expected one");
-      if (!documents.empty()) root_.reset(documents[0]);
+      root_ = YAML::Load(text);  // the first document: LoadAll does not return from some damaged files
     } catch (const YAML::Exception& error) {
       fail(error.mark, "is no YAML or JSON: " + error.msg);
     }
