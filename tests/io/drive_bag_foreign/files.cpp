@@ -223,7 +223,9 @@ class Drive {
   }
 
   void write_depths(Tick tick) {
-    PointBuffer grid(layouts::xyzi(), {.axes = PointAxes::forward_left_up}, {.rows = 3, .columns = 4});
+    const auto at_origin = [](Tick) { return Pose<frame::Instrument, frame::World>{}; };
+    PointBuffer grid(layouts::xyzi(), {.sensor = at_origin, .axes = PointAxes::forward_left_up},
+                     {.rows = 3, .columns = 4});
     grid.begin_scan(tick);
     std::array<float, 12> depths;
     depths.fill(std::numeric_limits<float>::infinity());
