@@ -498,7 +498,7 @@ TEST_CASE("samples are found by time") {
     CHECK(imu.sample_from({std::int64_t{1} << 60, 0}) == PulseIndex{1} << 52);
   }
   const Imu imu{Tripod{}, Mount{}, {.sample_rate = 400}};
-  for (const PulseIndex i : {0, 1, 799, 800, 123456})
+  for (const PulseIndex i : {0U, 1U, 799U, 800U, 123456U})
     CHECK(std::fabs((imu.sample(i).middle() - Tick::of(2 * i + 1, 800)).seconds()) < 1e-15);
 }
 
