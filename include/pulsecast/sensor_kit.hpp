@@ -51,8 +51,8 @@ class SensorKit {
 
   /// Simulates all sensors up to a time: slots before it, samples and ends of scans until and at it. Sensors follow one
   /// another, each on the threads of `workers`: several kits run side by side, `{pool, 1}` each. With a `ThreadPool`,
-  /// steps soon allocate nothing. @throws SettingError for an earlier time than the
-  /// kit's @throws std::runtime_error as `run`; the kit is then of no use
+  /// steps soon allocate nothing. @throws SettingError for an earlier time than the kit's, or a step within a step
+  /// @throws std::runtime_error as `run`; the kit is then of no use
   void step(Tick until, const Workers& workers = {}) {
     if (busy_)
       throw SettingError("SensorKit::step",

@@ -79,9 +79,10 @@ class DriveBag {
 
   /// Writes all messages complete up to `end`, before which no other may come, and this to `/clock`.
   void advance(const Tick& end) {
-    if (stamp(end) < end_)
+    const std::uint64_t limit = stamp(end);
+    if (limit < end_)
       throw SettingError("DriveBag::advance (end)", end.seconds(), "s", "not before that of the last advance");
-    put_until(end_ = stamp(end));
+    put_until(end_ = limit);
     ros::serialize(ros::Clock{ros::Time::of(end_)}, message_);
     file_.write(clock_.channel, end_, end_, message_);
   }

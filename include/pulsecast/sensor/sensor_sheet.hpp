@@ -38,16 +38,19 @@ struct SensorSheet : SpinningSensor {
       for (const auto& [member, difference] : differences)
         if (difference != 0) throw SettingError(member, " has no effect on this kind of sensor: expected its default");
     };
-    if (!sweeps) unused({{"SensorSheet::sweep_rate", sweep_rate}});
-    if (!sweeps) unused({{"SensorSheet::elevation_min", elevation_min}, {"SensorSheet::elevation_max", elevation_max}});
+    if (!sweeps)
+      unused({{"SensorSheet::sweep_rate", sweep_rate},
+              {"SensorSheet::elevation_min", elevation_min},
+              {"SensorSheet::elevation_max", elevation_max}});
     if (sweeps || !prisms.empty())
       unused({{"SensorSheet::azimuth_min", azimuth_min + pi}, {"SensorSheet::azimuth_max", azimuth_max - pi}});
     if (spins) return;
     unused({{"SpinningSensor::start", start}, {"SpinningSensor::exit_radius", exit_radius}});
     if (prisms.empty()) {
       require_within("SensorSheet::lasers (number with sweeps or a field of view)", lasers.size(), 1, 1);
-      unused({{"SensorLaser::elevation", lasers[0].elevation}, {"SensorLaser::azimuth", lasers[0].azimuth}});
-      unused({{"SensorLaser::delay", lasers[0].delay}});
+      unused({{"SensorLaser::elevation", lasers[0].elevation},
+              {"SensorLaser::azimuth", lasers[0].azimuth},
+              {"SensorLaser::delay", lasers[0].delay}});
     }
     for (const SensorLaser& laser : lasers) unused({{"SensorLaser::height", laser.height}});
   }
