@@ -82,6 +82,7 @@ PULSECAST_OPTIONAL_MEMBER(MovesInLanes, "simd::Mask poses(const TickLanes&, Pose
                           (TickLanes{}, std::declval<detail::PosesOf<T>&>()))
 
 /// Motion that knows its derivatives, as `Waypoints`, for an `Imu`. Others are differentiated by `derivatives_of`.
+/// `at` has one signature, by which both are known to be of the same class.
 /// Law: the derivatives of `at` at that tick, from the right where they jump; zero where the pose rests.
 template <class M>
 concept Differentiable = requires(const M m, Tick t) {

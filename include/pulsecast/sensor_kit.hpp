@@ -27,8 +27,9 @@ class SensorKit {
   /// Adds a sensor that scans from the kit's time on, beginning with its next whole scan, up to the end of its survey:
   /// `kit.add_scans("lidar", survey, 10, io::PointBuffer(layout, settings), [&](const io::PointBuffer& scan) {})`.
   /// `scan_rate` is from 1e-3 to 1e6 [Hz]. The sink is told the start of a scan in the step of this, then gets the
-  /// pulses of this and of later steps, as of a run. `take` is called when the scan is due, at its end. @throws
-  /// SettingError for a rate out of range, a name that the kit has, or a survey that finds no slots
+  /// pulses of this and of later steps, as of a run. `take` is called when the scan is due, at its end. Slots come in
+  /// their order: pulses of a leg that begins before others end come late, in a scan after their own.
+  /// @throws SettingError for a rate out of range, a name that the kit has, or a survey that finds no slots
   template <ScanSink Sink, class Take>
   requires std::invocable<Take&, const Sink&>
   void add_scans(std::string name, AnySurvey survey, double scan_rate, Sink sink, Take take) {

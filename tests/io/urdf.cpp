@@ -100,6 +100,22 @@ TEST_CASE("joints mimic one another in chains, and not in circles") {
                        FileError);
 }
 
+TEST_CASE("a joint that cannot be at 0 is in the middle of its limits, unless it is set") {
+  const support::TemporaryFolder folder;
+  const auto of_limits = [&](const std::string& limits, const std::map<std::string, double>& values = {}) {
+    const auto file = folder.write("robot.urdf",
+                                   "<robot name=\"r\"><link name=\"base\"/><link name=\"fork\"/>"
+                                   R"(<joint name="lift" type="prismatic"><parent link="base"/>)"
+                                   R"(<child link="fork"/><axis xyz="0 0 1"/><limit effort="1" velocity="1" )" +
+                                       limits + "/></joint></robot>");
+    return io::read_urdf(file, values).mount("fork").lever_arm.z;
+  };
+  CHECK(of_limits(R"(lower="0.25" upper="1.25")") == 0.75);
+  CHECK(of_limits(R"(lower="-2" upper="-1")") == -1.5);
+  CHECK(of_limits(R"(lower="0" upper="1")") == 0);
+  CHECK(of_limits(R"(lower="0.25" upper="1.25")", {{"lift", 0.5}}) == 0.5);
+}
+
 TEST_CASE("unknown links and joints are refused with the name that was meant, and values beyond the limits") {
   const io::RobotFrames robot = io::read_urdf(forklift);
   CHECK_THROWS_WITH_AS(static_cast<void>(robot.mount("lidar_lnk")),

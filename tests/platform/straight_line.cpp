@@ -45,8 +45,9 @@ TEST_CASE("who goes straight up, or nowhere, looks north") {
   for (const Vec3& way : {Vec3{0, 0, 50}, Vec3{0, 0, -50}, Vec3{}}) {
     const StraightLine line{.from = utm, .to = utm + way, .speed = 10};
     CHECK_NOTHROW(line.validate());
-    for (const Tick t : {Tick{}, Tick{2, 0.5}, Tick{100, 0}}) {
+    for (const Tick t : {Tick{-1, 0.5}, Tick{}, Tick{2, 0.5}, Tick{100, 0}}) {
       CHECK(finite(line.at(t).position));
+      CHECK(finite(line.derivatives(t).velocity));
       CHECK(length(line.at(t).direction(axis::forward) - axis::forward) < 1e-15);
     }
     CHECK(line.at({100, 0}).position == line.to);

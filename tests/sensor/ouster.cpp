@@ -28,6 +28,9 @@ TEST_CASE("lasers of an OS1 are evenly spaced from the uppermost down") {
   CHECK(sensor.lasers.back().elevation == doctest::Approx(-21.2 * pi / 180));
   CHECK(sensor.rings().front() == 63);
   CHECK_THROWS_AS(static_cast<void>(ouster_os1_64(100)), SettingError);
+  CHECK_THROWS_AS(static_cast<void>(ouster_os1_64(1024, 15)), SettingError);
+  CHECK_THROWS_WITH_AS(static_cast<void>(ouster_os1_64(2048, 20)), doctest::Contains("2048 at 10; these are 20"),
+                       SettingError);
 }
 
 }  // namespace

@@ -83,6 +83,16 @@ template <class V>
 [[nodiscard, gnu::always_inline]] inline V magnitude(const V& v) noexcept {
   return std::bit_cast<V>(static_cast<detail::Bits<V>>(std::bit_cast<detail::Bits<V>>(v) & 0x7FFF'FFFF'FFFF'FFFF));
 }
+/// Lanes of two vectors by their numbers, where those of `b` follow those of `a`.
+template <std::size_t... lane, class V>
+[[nodiscard, gnu::always_inline]] inline auto shuffle(const V& a, const V& b) noexcept {
+#if __has_builtin(__builtin_shufflevector)
+  return __builtin_shufflevector(a, b, lane...);
+#else  // g++ 11
+  constexpr std::size_t own = sizeof a / sizeof a[0];
+  return Vec<std::remove_cvref_t<decltype(a[0])>, sizeof...(lane)>{(lane < own ? a[lane % own] : b[lane % own])...};
+#endif
+}
 #pragma GCC diagnostic pop
 
 /// Numbers that a sum over a column adds up side by side, in one register or two: the same for

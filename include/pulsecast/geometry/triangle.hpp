@@ -66,13 +66,11 @@ struct TrianglePacket {
       const auto z = [&](std::size_t lane) noexcept { return of_triangle(triangles[lane]).z; };
       if constexpr (simd::lane_count == 2) {
         const auto even = pair(0), odd = pair(1);
-        return Corner{__builtin_shufflevector(even, odd, 0, 2), __builtin_shufflevector(even, odd, 1, 3),
-                      simd::generate(z)};
+        return Corner{simd::shuffle<0, 2>(even, odd), simd::shuffle<1, 3>(even, odd), simd::generate(z)};
       } else {
-        const auto even = __builtin_shufflevector(pair(0), pair(2), 0, 1, 2, 3),
-                   odd = __builtin_shufflevector(pair(1), pair(3), 0, 1, 2, 3);
-        return Corner{__builtin_shufflevector(even, odd, 0, 4, 2, 6), __builtin_shufflevector(even, odd, 1, 5, 3, 7),
-                      simd::generate(z)};
+        const auto even = simd::shuffle<0, 1, 2, 3>(pair(0), pair(2)),
+                   odd = simd::shuffle<0, 1, 2, 3>(pair(1), pair(3));
+        return Corner{simd::shuffle<0, 4, 2, 6>(even, odd), simd::shuffle<1, 5, 3, 7>(even, odd), simd::generate(z)};
       }
     };
     a = corner([](const auto& triangle) noexcept -> const Vec3& { return triangle.a; });

@@ -74,7 +74,8 @@ class DriveBag {
 
   /// Sets the pose of a frame on `/tf`.
   void move(ros::TransformStamped frame, const Tick& tick) { put_frames(tf_, {&frame, 1}, tick); }
-  /// Sets the poses of all fixed frames, at once, on `/tf_static`, for early and late subscribers.
+  /// Sets the poses of all fixed frames, at once, on `/tf_static`, for early and late subscribers. A drive that begins
+  /// later than at tick 0 gives its first tick, as the bag begins there.
   void fix(std::vector<ros::TransformStamped> frames, const Tick& tick = {}) { put_frames(fixed_, frames, tick); }
 
   /// Writes all messages complete up to `end`, before which no other may come, and this to `/clock`.

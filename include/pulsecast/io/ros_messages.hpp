@@ -96,7 +96,7 @@ struct Pose {
 /// Pose and its uncertainty.
 struct PoseWithCovariance {
   Pose pose{};                          ///< pose
-  std::array<double, 36> covariance{};  ///< of x, y, z and rotations about these; zeros: unknown [m2, m rad, rad2]
+  std::array<double, 36> covariance{};  ///< of x, y, z and rotations about these; 0 as of a truth [m2, m rad, rad2]
   PULSECAST_ROS_MESSAGE("geometry_msgs/msg/PoseWithCovariance", pose, covariance)
 };
 
@@ -110,7 +110,7 @@ struct Twist {
 /// Velocities and their uncertainty.
 struct TwistWithCovariance {
   Twist twist{};                        ///< velocities
-  std::array<double, 36> covariance{};  ///< as of poses, by seconds; zeros: unknown
+  std::array<double, 36> covariance{};  ///< as of poses, by seconds; 0 as of a truth
   PULSECAST_ROS_MESSAGE("geometry_msgs/msg/TwistWithCovariance", twist, covariance)
 };
 

@@ -73,6 +73,10 @@ class UrdfErrors : public console_bridge::OutputHandler {
   return {Rotation{turn.w, axis.x, axis.y, axis.z}, from_forward_left_up(position)};
 }
 
+[[nodiscard]] inline bool limited(const urdf::Joint& joint) noexcept {
+  return joint.limits && joint.type != urdf::Joint::CONTINUOUS;
+}
+
 /// Value of a joint, by those that it mimics, one after another [rad] or [m]. @throws FileError if they mimic in a
 /// circle
 [[nodiscard]] inline double value_of(const urdf::ModelInterface& robot, const urdf::Joint& joint,
@@ -89,8 +93,9 @@ class UrdfErrors : public console_bridge::OutputHandler {
                                     ": expected another joint of the robot"}));
     at = next->second.get();
   }
-  const auto found = values.find(at->name);
-  return factor * (found == values.end() ? 0 : found->second) + offset;
+  if (const auto found = values.find(at->name); found != values.end()) return factor * found->second + offset;
+  const bool beyond = limited(*at) && (at->limits->lower > 0 || at->limits->upper < 0);
+  return factor * (beyond ? std::midpoint(at->limits->lower, at->limits->upper) : 0) + offset;
 }
 
 /// Pose of the child of a joint in its parent. Source: URDF specification, joint: origin, then motion about the axis.
@@ -116,10 +121,11 @@ class UrdfErrors : public console_bridge::OutputHandler {
 
 }  // namespace detail
 
-/// Reads the frames of a robot from a URDF file, with its joints at these values by name, by default 0 [rad], prismatic
-/// ones [m]; floating and planar joints stay at their origin. Sets the output handler of console_bridge during the
-/// call, so that only one thread may read. @throws FileError @throws SettingError for a value of a joint that does not
-/// move, or that is beyond its limits
+/// Reads the frames of a robot from a URDF file, with its joints at these values by name [rad], prismatic ones [m]. By
+/// default they are at 0, or in the middle of limits beyond which it is, as joint_state_publisher has them; floating
+/// and planar joints stay at their origin. Sets the output handler of console_bridge during the call, so that only one
+/// thread may read. @throws FileError @throws SettingError for a value of a joint that does not move, or that is beyond
+/// its limits
 [[nodiscard]] inline RobotFrames read_urdf(const std::filesystem::path& path,
                                            const std::map<std::string, double>& joint_values = {}) {
   InputFile file(path, "a URDF");
@@ -140,7 +146,7 @@ class UrdfErrors : public console_bridge::OutputHandler {
     moving.push_back(name);
     const auto value = joint_values.find(name);
     if (value == joint_values.end()) continue;
-    const bool limited = joint->limits && joint->type != urdf::Joint::CONTINUOUS;
+    const bool limited = detail::limited(*joint);
     require_within(text::joined({"read_urdf (joint '", name, "')"}), value->second,
                    limited ? joint->limits->lower : -1e6, limited ? joint->limits->upper : 1e6, turns ? "rad" : "m");
   }

@@ -27,7 +27,8 @@ struct StraightLine {
   [[nodiscard]] auto at(Tick t) const noexcept { return pose_in_lanes(*this, t); }
   [[nodiscard]] Derivatives derivatives(Tick t) const noexcept {
     const double whole = length(to - from);
-    return speed * t.seconds() < whole ? Derivatives{.velocity = (speed / whole) * (to - from)} : Derivatives{};
+    return whole > 0 && speed * t.seconds() < whole ? Derivatives{.velocity = (speed / whole) * (to - from)}
+                                                    : Derivatives{};
   }
 
   /// One copy of the code, as compilers may contract products and sums in different ways.
@@ -35,7 +36,7 @@ struct StraightLine {
     const Vec3 path = to - from;
     const double whole = length(path);
     const simd::Doubles gone = speed * t.seconds(), share = gone / whole;
-    const auto on_the_way = gone < whole;
+    const auto on_the_way = gone < (whole > 0 ? whole : -detail::infinity);
     const auto between = [&](double a, double way, double b) {
       return on_the_way ? a + way * share : simd::Doubles{} + b;
     };

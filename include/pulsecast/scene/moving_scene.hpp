@@ -115,6 +115,7 @@ class MovingScene {
 
  private:
   template <class Map>
+  requires requires(const Map& map) { map.parts(); }
   friend class WithoutObject;
   using AnyPart = typename Scene<Shapes...>::AnyPart;
 

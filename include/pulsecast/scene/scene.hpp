@@ -171,6 +171,7 @@ class Scene {
   template <Geometry... OfMoving>
   friend class MovingScene;
   template <class Map>
+  requires requires(const Map& map) { map.parts(); }
   friend class WithoutObject;
 
   enum class Motions : std::uint8_t { refused, left_out };

@@ -10,8 +10,9 @@ namespace PULSECAST_NAMESPACE {
 /// A `Scene` or `MovingScene` as seen by a sensor that ignores an object, such as the robot that carries it: the hits,
 /// to the bit, of a scene without the parts of this `Part::object`. Refers to the scene, which must outlive it, and may
 /// be assigned anew. Each sensor may ignore another object of one scene; sensors that ignore none take the scene
-/// itself.
+/// itself. Of a `Layered`, the layer that has the object is seen without it.
 template <class Map>
+requires requires(const Map& map) { map.parts(); }
 class WithoutObject {
  public:
   /// Refers to a scene.

@@ -8,14 +8,18 @@
 namespace PULSECAST_NAMESPACE {
 
 /// Ouster OS1 with 64 evenly spaced lasers, the uppermost first, which fire together: 512, 1024 or
-/// 2048 columns a turn. The origin is that of the sensor's frame in its manual, whose forward is
-/// ours: the head starts backwards, at encoder 0. Source: Ouster, OS1 data sheet, rev. 7, 2023, and
-/// software user manual, 2.x, lidar coordinate frame: lenses 15.806 mm from the axis, 36.180 mm
-/// above the base. Noise of 1 cm of the 0.5 to 3 cm published; pulse length typical of the class.
-/// Left out: the azimuth offsets of a unit, `SensorLaser::azimuth`.
+/// 2048 columns a turn, 10 or 20 turns a second, 2048 columns 10. The origin is that of the sensor's frame in its
+/// manual, whose forward is ours: the head starts backwards, at encoder 0. Source: Ouster, OS1 data sheet, rev. 7,
+/// 2023, and software user manual, 2.x, lidar coordinate frame: lenses 15.806 mm from the axis, 36.180 mm above the
+/// base. Noise of 1 cm of the 0.5 to 3 cm published; pulse length typical of the class. Left out: the azimuth offsets
+/// of a unit, `SensorLaser::azimuth`.
 [[nodiscard]] inline SpinningSensor ouster_os1_64(std::size_t columns = 1024, double rotation_rate = 10) {
   using namespace literals;
-  require_within("ouster_os1_64 (columns)", columns, 512, 2048, "");
+  const bool has_mode = columns == 512 || columns == 1024 || (columns == 2048 && rotation_rate == 10);
+  if (!has_mode || (rotation_rate != 10 && rotation_rate != 20))
+    throw_setting_error("ouster_os1_64 (columns)", static_cast<double>(columns), "",
+                        text::joined({"512 or 1024 at 10 or 20 turns a second, or 2048 at 10; these are ",
+                                      text::to_text(rotation_rate)}));
   SpinningSensor sensor{.name = "OS-1-64",
                         .sequence_rate = static_cast<double>(columns) * rotation_rate,
                         .rotation_rate = rotation_rate,

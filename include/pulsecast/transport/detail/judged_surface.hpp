@@ -12,9 +12,8 @@ using FourSubrays = simd::Vec<double, 4>;  ///< of four subrays, so that sums ar
 /// Sets means from four sums by lane.
 [[gnu::always_inline]] inline void set_means(const FourSubrays& a, const FourSubrays& b, const FourSubrays& c,
                                              const FourSubrays& d, double each, FourSubrays& means) noexcept {
-  const FourSubrays low = __builtin_shufflevector(a, b, 0, 4, 2, 6) + __builtin_shufflevector(a, b, 1, 5, 3, 7);
-  const FourSubrays high = __builtin_shufflevector(c, d, 0, 4, 2, 6) + __builtin_shufflevector(c, d, 1, 5, 3, 7);
-  means = each * (__builtin_shufflevector(low, high, 0, 1, 4, 5) + __builtin_shufflevector(low, high, 2, 3, 6, 7));
+  const auto sum = [](const FourSubrays& v) { return (v[0] + v[1]) + (v[2] + v[3]); };
+  means = each * FourSubrays{sum(a), sum(b), sum(c), sum(d)};
 }
 
 /// True for places near a plane along y, and an even power, by their means: of x, y, z, power; of the squares of x, y,

@@ -13,7 +13,7 @@
 #include <fastcdr/Cdr.h>
 #include <fastcdr/FastBuffer.h>
 
-#include <pulsecast/base/namespace.hpp>
+#include <pulsecast/base/require.hpp>
 
 /// Descriptions of message types, from which come their definitions and the encoding of messages.
 namespace PULSECAST_NAMESPACE::io::ros {
@@ -160,11 +160,13 @@ template <RosMessage M>
 inline constexpr const char* definition_of = detail::definition_text<M>.characters.data();
 
 /// Writes a message in little-endian CDR after an encapsulation header, as ROS 2 sends and records it, into `bytes`,
-/// and allocates nothing but these. Source: OMG DDSI-RTPS 2.5, 10, CDR_LE.
+/// and allocates nothing but these. @throws SettingError for more than 2^32 - 1 bytes
+/// Source: OMG DDSI-RTPS 2.5, 10, CDR_LE.
 template <RosMessage M>
 void serialize(const M& message, std::vector<std::byte>& bytes) {
   constexpr std::array<std::byte, 4> encapsulation{std::byte{0}, std::byte{1}};
   const std::size_t room = detail::max_size(message);
+  require_within(type_of<M>, static_cast<double>(room), 0, 0xFFFFFFFF, "byte");
   bytes.assign(encapsulation.size() + room, std::byte{});  // the padding of numbers is zero
   std::ranges::copy(encapsulation, bytes.begin());
   eprosima::fastcdr::FastBuffer buffer(reinterpret_cast<char*>(bytes.data() + encapsulation.size()), room);
