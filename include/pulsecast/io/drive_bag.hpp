@@ -60,6 +60,7 @@ class DriveBag {
     ros::serialize(message, message_);
     keep(topic.channel, tick, complete);
   }
+  /// Appends a message that is complete at its tick.
   template <ros::RosMessage M>
   void write(const BagTopic<M>& topic, const M& message, const Tick& tick) {
     write(topic, message, tick, tick);
