@@ -278,7 +278,7 @@ LeftOut LegFiles::left_out() const {
 struct Picture::Inside {
   io::ImageWriter writer;
 };
-Picture::Picture(const fs::path& path) : inside_(new Inside{io::ImageWriter(path)}) {}
+Picture::Picture(const fs::path& path) : inside_(new Inside{io::ImageWriter(path, {.frame_on = io::FrameOn::standing})}) {}
 Picture::~Picture() = default;
 void Picture::operator()(const EchoBatch& batch) { inside_->writer(batch); }
 void Picture::add_ground(const Raster& raster, const Placement& placement) {
