@@ -319,7 +319,7 @@ other_versions() {
   version=$(sed -nE 's/^#define PULSECAST_VERSION "(.*)"$/\1/p' include/pulsecast/version.hpp)
   grep -HnoE 'find_package\(pulsecast [0-9.]+' README.md docs/*.md docs/packaging/* tests/package/*.txt 2> /dev/null | grep -vF "pulsecast ${version%.*}"
   sed -nE 's/^## ([0-9.]+).*/CHANGELOG.md: \1/p' CHANGELOG.md | head -n 1 | grep -vxF "CHANGELOG.md: $version"
-  grep -HnE '"?version"?[ =:]+"' docs/packaging/*/*.py docs/packaging/*/*/*.json | grep -vF "\"$version\""
+  grep -HnE '"?version"?[ =:]+"' CITATION.cff docs/packaging/*/*.py docs/packaging/*/*/*.json | grep -vF "\"$version\""
 }
 rule 'every page and recipe states the version of version.hpp' other_versions
 

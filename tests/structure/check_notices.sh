@@ -14,7 +14,7 @@ fresh() {
   rm -rf "$copy/tree" && mkdir "$copy/tree" && cd "$copy/tree" || exit 2
   cp -R "$root/include" "$root/examples" "$root/tests" "$root/bench" "$root/.ci" "$root/CMakeLists.txt" . || exit 2
   mkdir docs && cp -R "$root"/docs/*.md "$root/docs/packaging" "$root/docs/tables" "$root/docs/for" docs && ln -s "$root/docs/pictures" "$root/docs/notebooks" docs || exit 2
-  cp "$root"/*.md "$root"/*.json . 2> /dev/null
+  cp "$root"/*.md "$root"/*.json "$root"/*.cff . 2> /dev/null
 }
 
 # notices RULE COMMAND: check.sh says RULE once COMMAND was run in a copy, and does not say it of the tree as it is. Of the copy, the check
@@ -107,6 +107,7 @@ notices "$versions" 'sed -i "s/find_package(pulsecast [0-9.]*/find_package(pulse
 notices "$versions" 'sed -i "s/find_package(pulsecast [0-9.]*/find_package(pulsecast 0.0/" tests/package/CMakeLists.txt'
 notices "$versions" 'sed -i "0,/^## [0-9.]*/s//## 0.0.1/" CHANGELOG.md'
 notices "$versions" 'sed -i "s/version = .*/version = \"0.0.1\"/" docs/packaging/conan/conanfile.py'
+notices "$versions" 'sed -i "s/^version: .*/version: \"0.0.1\"/" CITATION.cff'
 
 # commas LINE: what commas.awk prints of a line of C++.
 commas() {
