@@ -35,6 +35,7 @@
 
 #include "../summary.hpp"
 #include "accuracy.hpp"
+#include "doctor.hpp"
 #include "entry.hpp"
 #include "error_report.hpp"
 #include "forecast_report.hpp"
@@ -604,6 +605,10 @@ int work(const Options& options, Ranks& ranks) {
   notes.note(options.notes);
   if (options.command == "catalogue") {
     print_catalogue(options);
+    return success;
+  }
+  if (options.command == "doctor") {
+    print_abilities(options);
     return success;
   }
   const SurveyFile file = read_survey_file(options, notes);

@@ -32,7 +32,7 @@ namespace {
 namespace fs = std::filesystem;
 namespace text = pulsecast::text;
 
-constexpr const char* all_commands[] = {"run", "check", "info", "preview", "forecast", "catalogue"};
+constexpr const char* all_commands[] = {"run", "check", "info", "preview", "forecast", "catalogue", "doctor"};
 
 /// "; did you mean '--format'?"
 std::string nearest_option(const CLI::App& app, const std::string& given) {
@@ -360,13 +360,13 @@ class CommandLine {
     for (const std::string& extra : extras)
       if (extra.starts_with('-')) return "unknown option " + extra + nearest_option(app_, extra);
     const std::vector<std::string> commands(std::begin(all_commands), std::end(all_commands));
-    const bool is_catalogue = o_.command == "catalogue";
+    const bool without_document = o_.command == "catalogue" || o_.command == "doctor";
     if (!extras.empty() && o_.survey.extension() != ".xml")
       return "unknown command '" + o_.survey.string() + "'" + text::suggestion(o_.survey.string(), commands);
-    if (is_catalogue && !o_.survey.empty())
-      return "unexpected argument '" + o_.survey.string() + "': catalogue takes no document";
+    if (without_document && !o_.survey.empty())
+      return "unexpected argument '" + o_.survey.string() + "': " + o_.command + " takes no document";
     if (!extras.empty()) return "unexpected argument '" + extras.front() + "': expected one document";
-    if (!is_catalogue && o_.survey.empty()) return "no document is given: expected SURVEY.xml";
+    if (!without_document && o_.survey.empty()) return "no document is given: expected SURVEY.xml";
     return "";
   }
 
@@ -478,7 +478,8 @@ class CommandLine {
       "  pulsecast preview SURVEY.xml    draws a preview of its points\n"
       "  pulsecast forecast SURVEY.xml   predicts time, memory and errors, and finds the cheapest settings within "
       "limits\n"
-      "  pulsecast catalogue             lists the scanners and platforms of the catalogue\n",
+      "  pulsecast catalogue             lists the scanners and platforms of the catalogue\n"
+      "  pulsecast doctor                tells what this installation can do, and what it lacks\n",
       "pulsecast"};
   Options o_;
   std::string seed_, epsg_, project_, misses_at_, scan_rate_, waveform_bins_, time_, memory_, apply_to_, swallowed_;

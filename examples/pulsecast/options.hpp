@@ -34,7 +34,7 @@ struct ForecastLimits {
 
 /// Options of the command line.
 struct Options {
-  std::string command = "run";  ///< run, check, info, preview, forecast or catalogue
+  std::string command = "run";  ///< run, check, info, preview, forecast, catalogue or doctor
   std::filesystem::path survey{};
   std::vector<std::filesystem::path> assets{};  ///< those given, then those of the program
   std::filesystem::path output = "output";

@@ -190,12 +190,12 @@ const char* kind_name(helios::PlatformKind kind) {
   return names[static_cast<std::size_t>(kind)];
 }
 
-std::vector<fs::path> documents_of(const Options& options) {
+std::vector<fs::path> documents_of(const std::vector<fs::path>& folders) {
   std::vector<fs::path> files;
   std::set<std::string> seen;
   std::error_code ignored;
   const fs::path here_now = fs::current_path(ignored);  // documents of surveys
-  for (const fs::path& folder : options.assets)
+  for (const fs::path& folder : folders)
     for (const fs::path& inside : {folder, folder / "data"}) {
       if (inside == here_now) continue;
       std::error_code error;
@@ -211,16 +211,19 @@ std::vector<fs::path> documents_of(const Options& options) {
 
 }  // namespace
 
-void print_catalogue(const Options& options) {
-  for (const fs::path& file : documents_of(options)) {
-    helios::AssetDocument assets;
-    try {
-      assets = helios::read_assets(file, {.assets = options.assets});
+std::vector<CatalogueDocument> read_catalogue(const Options& options, const std::vector<fs::path>& folders) {
+  std::vector<CatalogueDocument> all;
+  for (fs::path& file : documents_of(folders)) try {
+      helios::AssetDocument assets = helios::read_assets(file, {.assets = options.assets});
+      if (!assets.scanners.empty() || !assets.platforms.empty()) all.push_back({std::move(file), std::move(assets)});
     } catch (const FileError& error) {
       if (options.verbose) std::cerr << "note: " << error.what() << '\n';
-      continue;
     }
-    if (assets.scanners.empty() && assets.platforms.empty()) continue;
+  return all;
+}
+
+void print_catalogue(const Options& options) {
+  for (const auto& [file, assets] : read_catalogue(options, options.assets)) {
     std::cout << file.string() << '\n';
     for (const auto& s : assets.scanners) {
       std::cout << "  " << std::left << std::setw(36) << s.id << std::setw(13) << optic_name(s.channels.front().optic)

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include <pulsecast/helios/document.hpp>
 #include <pulsecast/helios/settings.hpp>
 
 #include "notes.hpp"
@@ -39,6 +40,15 @@ struct WaveformChange {
 /// file mode. Throws a `FileError` and keeps the old file if the new text would give another survey.
 void write_survey_file(const Options& options, const SurveyFile& file, const WaveformChange& change,
                        const std::filesystem::path& path);
+
+/// Document with scanners or platforms.
+struct CatalogueDocument {
+  std::filesystem::path path;
+  pulsecast::helios::AssetDocument assets;
+};
+/// Those in folders and their `data/`. Documents with faults are left out; noted if `verbose`.
+std::vector<CatalogueDocument> read_catalogue(const Options& options,
+                                              const std::vector<std::filesystem::path>& folders);
 
 /// Prints the scanners and platforms in the program's assets.
 void print_catalogue(const Options& options);

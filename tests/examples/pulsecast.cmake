@@ -124,6 +124,8 @@ expect(2 "unexpected argument './-more.xml': expected one document" check -- -da
 expect(0 "leg000.*2000.*strip00a" info ${SURVEY})
 expect(0 "test_preview.png" preview ${SURVEY} --output preview)
 expect(0 "" catalogue)
+expect(2 "unexpected argument.*doctor takes no document" doctor ${SURVEY})
+expect(0 "^version +[0-9.]+\nprocessor .*\nthreads +[1-9].*\nformats +xyz, .*\nmeshes .*\nPROJ .*\nlive page .*\nMPI .*\ncatalogue +[^\n]*catalogue: [1-9][0-9]* scanners, [1-9][0-9]* platforms, [1-9][0-9]* data sheets of sensors, [1-9][0-9]* spectra\n$" doctor)
 
 # faults are told before anything is left
 file(READ ${SURVEY} text)
