@@ -142,7 +142,7 @@ class Session {
       notes_.warn("no points from leg " + empty_legs_ +
                   ": a leg without pulses, as the last of a platform that moves, may be inactive");
     if (all.count(Fate::blocked) > all.slots / 20 * 19)
-      notes_.note("more than 95 % of the pulses are blocked by the field of view: are its angles in degrees?");
+      notes_.note("more than 95 % of the slots are outside the field of view: are its angles in degrees?");
     const std::string traffic = ranks_.traffic();
     if (!options_.quiet) print_summary(all, traffic);
     notes_.require_none();
@@ -244,7 +244,6 @@ class Session {
         std::cout << "  " << std::left << std::setw(13) << name << std::right << std::setw(12) << all.count(f) << unit;
     };
     fate("with echoes", Fate::returned, " pulses\n");
-    fate("blocked", Fate::blocked, " pulse slots, when the optic is closed\n");
     for (const std::string& written : folders_) std::cout << "  " << written << '\n';
   }
 
@@ -469,7 +468,7 @@ void print_info(const Options& options, const SurveyFile& file, std::uint64_t se
               << b.z << " m\n";
   }
   if (simulation.repetitions() > 1) std::cout << "runs     " << simulation.repetitions() << '\n';
-  std::cout << "\n  files       starts [s]   lasts [s]   rate [kHz]        pulses\n";
+  std::cout << "\n  files       starts [s]   lasts [s]   rate [kHz]         slots\n";
   for (const auto& leg : compiled.legs) {
     const std::string name = leg.active ? prefix_of(leg) : "(inactive)";
     std::cout << "  " << std::left << std::setw(10) << name << std::right << std::setw(12) << leg.start.seconds()

@@ -286,7 +286,7 @@ namespace {
 
 class Picture final : public WrittenFile<io::ImageWriter> {
  public:
-  Picture(const fs::path& path, const helios::SurveySettings& survey) : WrittenFile(path) {
+  Picture(const fs::path& path, const helios::SurveySettings& survey) : WrittenFile(path, io::ImageSettings{.frame_on = io::FrameOn::standing}) {
     for_each_raster(survey, [this](const Raster& raster, const Placement& placement) {
       writer_.add_ground(raster, hillshade(raster), placement);
     });

@@ -60,7 +60,7 @@ class Simulation {
     bool waveform_noise = false;                  ///< add receiver noise
     bool fixed_incidence = false;                 ///< perpendicular incidence, for scattering
     bool uncertainty = false;                     ///< `points` have the uncertainty of echoes
-    bool library_physics = false;                 ///< not that of HELIOS++: docs/surveys.md
+    bool library_physics = false;                 ///< not that of HELIOS++: docs/program.md
     bool light_paths = false;                     ///< multi-bounce light, also without `<light>`
     bool platform_noise = true;                   ///< as in the survey; false: none
     bool leg_noise = true;                        ///< random leg offsets as in the survey; false: none
