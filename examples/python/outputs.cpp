@@ -139,7 +139,10 @@ std::string format_of(const fs::path& path, const std::string& given) {
   };
   for (const std::string_view ending : further_formats) try_ending(ending);
   if (!found.empty()) return found;
-  if (!given.empty()) return given;
+  if (is_point_format(given)) return given;
+  if (!given.empty())
+    throw std::invalid_argument("format '" + given + "': expected " +
+                                names_of_formats([](const PointFormat&) { return true; }));
   for (const PointFormat& format : point_formats) try_ending(format.name);
   if (!found.empty()) return found;
   std::string known;
