@@ -24,12 +24,6 @@ struct SurveyFile {
 /// Reads the survey of the command line. Notes its warnings, also if it throws.
 SurveyFile read_survey_file(const Options& options, Notes& notes);
 
-/// Reference system of a run, complete: that of the options, or that which all rasters of the scene share. Unknown if
-/// there is none, or different ones. Rasters moved by their part do not count. Throws a `FileError` for a system of the
-/// options that cannot be written; notes one of the rasters, and heights without a system.
-pulsecast::io::SpatialReference reference_system_of(const Options& options,
-                                                    const pulsecast::helios::SceneSettings& scene, Notes& notes);
-
 /// Changes by `write_survey_file`, to all channels.
 struct WaveformChange {
   int rings = 0;        ///< `beamSampleQuality`
