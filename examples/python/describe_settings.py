@@ -19,6 +19,7 @@ NOT_A_MEMBER = re.compile(r"  (static constexpr |using |bool operator==|\[\[nodi
 FUNCTION = re.compile(r"[^;]*\) (const )?(noexcept )?\{$")
 TYPES = {"bool": "bool", "int": "int", "std::uint64_t": "int", "double": "float", "char": "str", "std::string": "str",
          "std::filesystem::path": "str | os.PathLike[str]", "Vec3": "tuple[float, float, float]"}
+ANGLES = {"float", "float | None", TYPES["Vec3"]}  # in radians by their comments: they have `NAME_deg`, too, by pulsecast/_degrees.py
 
 
 def quoted(text):
@@ -107,6 +108,16 @@ def stubs_of(described):
         yield f"    {docstring(doc)}\n" if doc or not members else ""
         for member, annotated, what in members:
             yield f"    {member}: {annotated} = ...\n" + (f"    {docstring(what)}\n" if what else "")
+        angles = [(member, annotated) for member, annotated, what in members if annotated in ANGLES and re.search(r"\[rad(/s)?\]$", what)]
+        if angles:
+            yield "    def __init__(\n        self,\n"
+            yield from (f"        {member}: {annotated} = ...,\n" for member, annotated, _ in members)
+            yield "        *,\n"
+            yield from (f"        {member}_deg: {annotated.removesuffix(' | None')} | None = ...,\n" for member, annotated in angles)
+            yield "    ) -> None: ...\n"
+        for member, annotated in angles:
+            yield f"    @property\n    def {member}_deg(self) -> {annotated}: ...\n"
+            yield f"    @{member}_deg.setter\n    def {member}_deg(self, value: {annotated}) -> None: ...\n"
         yield "\n"
 
 

@@ -325,8 +325,8 @@ void bind_light(py::module_& m) {
            "index: refractive index, from 1 to 4; group_index: vacuum speed of light by that of a pulse, 0 for the "
            "index; absorption, "
            "scattering: coefficients [1/m]; backscatter: at most scattering [1/(m sr)]. Raises SettingError.")
-      .def_readonly("index", &Medium::index)
-      .def_readonly("group_index", &Medium::group_index)
+      .def_readonly("index", &Medium::index, "Refractive index.")
+      .def_readonly("group_index", &Medium::group_index, "Vacuum speed of light by that of a pulse; 0: the index.")
       .def_readonly("absorption", &Medium::absorption, "[1/m]")
       .def_readonly("scattering", &Medium::scattering, "[1/m]")
       .def_readonly("backscatter", &Medium::backscatter, "[1/(m sr)]")
