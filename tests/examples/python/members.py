@@ -13,26 +13,25 @@ INCLUDE = Path(__file__).parents[3] / "include" / "pulsecast"
 ROOMS = ("sensor", "platform", "deflector", "detector", "scanner", "material", "scene", "shape", "transport")
 
 # Settings of C++ whose names are others in Python: members of classes, or arguments of their constructors.
-FILES = ("ObjSource.files", "MeshSource.materials")  # by the material files that they name
 REACHED = {
     "GroundVehicleSettings": ("PlatformSettings.kind", "LegPlatformSettings.speed"), "plan_ground_vehicle": ("PlatformSettings.kind",),
     "MulticopterSettings": ("MulticopterDynamics", "LegPlatformSettings.smooth_turn"), "plan_multicopter": ("PlatformSettings.kind",),
-    "Mount": ("PlatformSettings.mount",), "PoseErrors": ("NoiseSettings", "MountErrorSettings"),
+    "Mount": ("PlatformSettings.mount",), "PoseErrors": ("PoseErrorSettings", "NoiseSettings", "MountErrorSettings"),
     "StraightLine": ("LegPlatformSettings.position", "LegPlatformSettings.speed"), "Tripod": ("LegPlatformSettings.position",),
-    "Waypoints": ("TrajectorySettings",),
+    "Waypoints": ("Simulation(trajectories)", "TrajectorySettings"),
     "FiberArray": ("LineOptic",), "FixedBeam": ("LegScannerSettings.scan_rate",), "OscillatingMirror": ("OscillatingOptic",),
     "PalmerMirror": ("ConicOptic",), "PolygonMirror": ("RotatingOptic",), "RisleyPrisms": ("RisleyOptic",),
     "RotatingHead": ("ChannelSettings.head_axis", "LegScannerSettings.head_rate"),
     "GaussianFit": ("Simulation(echo_width)",), "RangeErrors": ("ChannelSettings.accuracy", "ErrorFormulas.range_noise"),
     "Receiver": ("ChannelSettings",), "ReceiverNoise": ("Simulation(waveform_noise)",), "WaveformSettings": ("FullWaveformSettings",),
     "Scanner": ("ScannerSettings", "ChannelSettings"),
-    "Image": ("Mesh(picture)",), "Material": ("Mesh(reflectance)", "Mesh(classification)", "ObjSource.files"), "SurfaceLaw": FILES,
+    "Image": ("Mesh(picture)",), "Material": ("Mesh(reflectance)", "Mesh(classification)", "Mesh(law)"), "SurfaceLaw": ("Mesh(law)",),
     "MediumRegion": ("MediumSettings",), "Precipitation": ("MediumSettings.rate",), "WaterState": ("Medium(absorption)", "Medium(index)"),
-    "ReflectanceMap": FILES, "Beads": FILES, "CubeCorners": FILES, "Retroreflector": FILES,
-    "Phong": FILES, "NormalizedPhong": FILES, "Microfacet": FILES,
-    "SteadyMotion": ("MotionSequenceSettings",), "PartMotion": ("MotionSequenceSettings",),
-    "Placement": ("TransformSettings",),
-    "ClassMaterials": ("GeoTiffSource.classes",), "Mask": FILES, "MeshData": ("Mesh",), "Raster": ("GeoTiffSource",),
+    "ReflectanceMap": ("MeshSource.materials", "ObjSource.files"), "Beads": ("MeshSource.materials", "ObjSource.files"),
+    "CubeCorners": ("MeshSource.materials", "ObjSource.files"), "Retroreflector": ("MeshSource.materials", "ObjSource.files"),
+    "SteadyMotion": ("MotionSequenceSettings", "Mesh(motion)"), "PartMotion": ("MotionSequenceSettings", "Mesh(motion)"),
+    "Placement": ("Mesh(placements)", "TransformSettings"),
+    "ClassMaterials": ("GeoTiffSource.classes",), "Mask": ("Mesh(cutoff)",), "MeshData": ("Mesh",), "Raster": ("GeoTiffSource",),
     "TransmissiveVoxels": ("VoxelSource.mode",), "VoxelData": ("VoxelSource", "XyzSource"),
     "LightPaths": ("LightSettings",), "MultipleScattering": ("LightSettings.orders",),
 }
@@ -40,12 +39,10 @@ REACHED = {
 SENSORS = "a sensor with times of firing, for a `SensorKit` in C++; `catalogue` has the same instruments as `ScannerSettings`"
 DETECTORS = "a detector of user-defined pipelines (`bind_survey`): documents have full waveforms"
 WAVES = "a water surface with waves, in C++; Python has calm ones, `SmoothInterface.water` of a `Mesh`"
-PLANNER = "a planner of `StraightLine`s in C++, whose ends are the `position`s of legs"
 LOW_LEVEL = "a part of others, which set it"
 WITHOUT = {
     "Earth": "of an `ImuSettings`", "InertialErrors": "of an `ImuSettings`", "ImuSettings": "an inertial sensor, which sends no pulses",
     "PixelArray": SENSORS, "SensorSheet": SENSORS, "SpinningSensor": SENSORS,
-    "BlockFlight": PLANNER, "plan_block_flight": PLANNER, "Tabulated": "a measured law: material files have the others",
     "PatternTable": "a measured pattern of beams: documents have the optics by their laws",
     "FirstHit": DETECTORS, "FmcwSettings": DETECTORS, "PhaseShiftSettings": DETECTORS, "PhotonCountingSettings": DETECTORS,
     "ReceiverChain": DETECTORS,
