@@ -15,10 +15,12 @@ import sys
 
 MEMBER = re.compile(r"  (?P<type>[\w:<>, ]+?) (?P<name>\w+)(?:\{.*\}| = [^;]*)?;(?:\s*///< (?P<doc>.*))?$")
 BROKEN_MEMBER = re.compile(r"^(  [\w:<>]+(?: \w+ =)?)\n +", re.MULTILINE)  # after its type or `=`
-NOT_A_MEMBER = re.compile(r"  (static constexpr |using |bool operator==|\[\[nodiscard\]\]|//[^/]|void \w+\()")
+NOT_A_MEMBER = re.compile(r"  (static constexpr |using |bool operator==|\[\[nodiscard\]\]|//[^/]|[\w:]+ \w+\()")
 FUNCTION = re.compile(r"[^;]*\) (const )?(noexcept )?\{$")
 TYPES = {"bool": "bool", "int": "int", "std::uint64_t": "int", "double": "float", "char": "str", "std::string": "str",
-         "std::filesystem::path": "str | os.PathLike[str]", "Vec3": "tuple[float, float, float]"}
+         "std::filesystem::path": "str | os.PathLike[str]", "Vec3": "tuple[float, float, float]",
+         "Box": "tuple[tuple[float, float, float], tuple[float, float, float]]"}
+ANGLES = {"float", "float | None", TYPES["Vec3"]}  # what may be in radians, as `is_angle` of settings.cpp
 
 
 def quoted(text):
@@ -29,7 +31,7 @@ def annotation(cpp, known):
     """A type as Python writes it."""
     if cpp in known:
         return known[cpp]
-    match = re.fullmatch(r"std::(optional|vector|array|variant)<(.*)>", cpp)
+    match = re.fullmatch(r"(?:std::)?(optional|vector|array|variant|SharedArray)<(.*)>", cpp)
     if not match:
         sys.exit(f"the type {cpp} is not known")
     of = [annotation(one, known) for one in match[2].split(", ") if not one.isdigit()]  # of those that are there, none has a comma inside
@@ -39,21 +41,32 @@ def annotation(cpp, known):
 
 
 def describe(lines):
-    """Yields (kind, name, doc, [(member, type as Python writes it, doc)]) of each struct and enum."""
+    """Yields (kind, name with its namespace, doc, [(member, type as Python writes it, doc)]) of each struct and enum."""
     known = dict(TYPES)
     for kind, name, doc, members in parse(lines, known):
-        known[name] = name if kind == "struct" else "Literal[" + ", ".join(quoted(member) for member, _, _ in members) + "]"
+        plain = plain_name(name)
+        known[plain] = plain if kind == "struct" else "Literal[" + ", ".join(quoted(member) for member, _, _ in members) + "]"
         yield kind, name, doc, [(member, annotation(cpp, known) if kind == "struct" else "", what) for member, cpp, what in members]
+
+
+def plain_name(name):
+    return name.rpartition("::")[2]
 
 
 def parse(lines, known):
     """As `describe`, with types as C++ writes them. Adds to `known` what they are called besides."""
-    comment, at, inside_function = [], None, False
+    comment, at, inside_function, space, hidden = [], None, False, "", False
     for line in lines:
-        if line.startswith("///"):
+        if line in ("namespace detail {", "}  // namespace detail"):
+            hidden = line.startswith("n")
+        elif hidden:
+            continue
+        elif match := re.match(r"namespace PULSECAST_NAMESPACE(?:::(\w+))? \{$", line):
+            space = match[1] + "::" if match[1] else ""
+        elif line.startswith("///"):
             comment.append(line[3:].strip())
         elif match := re.match(r"(?:enum class|struct) (\w+)(?: : [\w:]+)? \{(.*)$", line):
-            at = ("enum" if line.startswith("enum") else "struct", match[1], " ".join(comment), [])
+            at = ("enum" if line.startswith("enum") else "struct", space + match[1], " ".join(comment), [])
             above = []
             if match[2]:  # an enum on one line
                 at[3].extend((name.strip(), "", "") for name in match[2].removesuffix("};").split(","))
@@ -85,7 +98,7 @@ def parse(lines, known):
 def cpp_of(described):
     structs = []
     for kind, name, doc, members in described:
-        yield f"template <>\nstruct Described<helios::{name}> {{\n  static constexpr const char* name = {quoted(name)};\n"
+        yield f"template <>\nstruct Described<{name}> {{\n  static constexpr const char* name = {quoted(plain_name(name))};\n"
         if kind == "enum":
             names = ", ".join(quoted(member) for member, _, _ in members)
             yield f"  static constexpr std::array<const char*, {len(members)}> values{{{names}}};\n}};\n\n"
@@ -96,17 +109,27 @@ def cpp_of(described):
         for member, kind_of_member, what in members:
             yield f"    io({quoted(member)}, settings.{member}, {quoted(kind_of_member)}, {quoted(what)});\n"
         yield "  }\n};\n\n"
-    yield "using AllSettings = std::tuple<" + ", ".join("helios::" + name for name in structs) + ">;\n"
+    yield "using AllSettings = std::tuple<" + ", ".join(structs) + ">;\n"
 
 
 def stubs_of(described):
     for kind, name, doc, members in described:
         if kind == "enum":
             continue
-        yield f"@dataclass(slots=True)\nclass {name}:\n"
+        yield f"@dataclass(slots=True)\nclass {plain_name(name)}:\n"
         yield f"    {docstring(doc)}\n" if doc or not members else ""
         for member, annotated, what in members:
             yield f"    {member}: {annotated} = ...\n" + (f"    {docstring(what)}\n" if what else "")
+        angles = [(member, annotated) for member, annotated, what in members if annotated in ANGLES and re.search(r"\[rad(/s)?\]$", what)]
+        if angles:
+            yield "    def __init__(\n        self,\n"
+            yield from (f"        {member}: {annotated} = ...,\n" for member, annotated, _ in members)
+            yield "        *,\n"
+            yield from (f"        {member}_deg: {annotated.removesuffix(' | None')} | None = ...,\n" for member, annotated in angles)
+            yield "    ) -> None: ...\n"
+        for member, annotated in angles:
+            yield f"    @property\n    def {member}_deg(self) -> {annotated}: ...\n"
+            yield f"    @{member}_deg.setter\n    def {member}_deg(self, value: {annotated}) -> None: ...\n"
         yield "\n"
 
 

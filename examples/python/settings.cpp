@@ -20,6 +20,12 @@
 #include <pulsecast/base/error.hpp>
 #include <pulsecast/base/vector.hpp>
 #include <pulsecast/helios/settings.hpp>
+#include <pulsecast/material/lambert.hpp>
+#include <pulsecast/material/microfacet.hpp>
+#include <pulsecast/material/normalized_phong.hpp>
+#include <pulsecast/material/phong.hpp>
+#include <pulsecast/material/tabulated.hpp>
+#include <pulsecast/platform/block_flight.hpp>
 
 #include "../field_list.hpp"
 
@@ -32,6 +38,9 @@ namespace {
 template <class Settings>
 struct Described;
 #include <settings_members.inc>
+
+// A law, or what a program plans by: no settings of documents.
+using AnyLaw = std::variant<Lambert, DirectionIndependent, Phong, NormalizedPhong, Microfacet, Tabulated>;
 
 template <class T>
 concept Struct = requires {
@@ -52,6 +61,9 @@ template <class T>
 inline constexpr bool is_array = false;
 template <class T, std::size_t N>
 inline constexpr bool is_array<std::array<T, N>> = true;
+
+template <class T>
+inline constexpr bool is_list = is_a<T, std::vector> || is_a<T, SharedArray> || is_array<T>;
 
 template <class T>
 inline constexpr bool is_number =
@@ -75,13 +87,15 @@ py::object object_of(const T& value) {
     return py::str(value.string());
   } else if constexpr (std::same_as<T, Vec3>) {
     return py::make_tuple(value.x, value.y, value.z);
+  } else if constexpr (std::same_as<T, Box>) {
+    return py::make_tuple(object_of(value.min), object_of(value.max));
   } else if constexpr (std::same_as<T, char>) {
     return py::str(&value, 1);
   } else if constexpr (is_a<T, std::optional>) {
     return value ? object_of(*value) : py::none();
   } else if constexpr (is_a<T, std::variant>) {
     return std::visit([](const auto& one) { return object_of(one); }, value);
-  } else if constexpr (is_a<T, std::vector> || is_array<T>) {
+  } else if constexpr (is_list<T>) {
     py::list all;
     for (const auto& one : value) all.append(object_of(one));
     return all;
@@ -169,6 +183,17 @@ T enum_of(py::handle object, const std::string& where) {
   refuse(where, names, object);
 }
 
+template <Struct T>
+T settings_of(py::handle object, const std::string& where) {
+  if (!py::isinstance(object, class_of<T>())) refuse(where, Described<T>::name, object);
+  T settings;
+  Described<T>::members(settings, [&](const char* name, auto& member, auto...) {
+    member = value_of<std::remove_cvref_t<decltype(member)>>(py::object(object.attr(name)), where + "." + name);
+  });
+  if constexpr (Tabled<T>) check(settings, where);
+  return settings;
+}
+
 template <class T>
 T value_of(py::handle object, const std::string& where) {
   if constexpr (Enum<T>) {
@@ -196,6 +221,11 @@ T value_of(py::handle object, const std::string& where) {
   } else if constexpr (std::same_as<T, Vec3>) {
     const auto [x, y, z] = value_of<std::array<double, 3>>(object, where);
     return {x, y, z};
+  } else if constexpr (std::same_as<T, Box>) {
+    const auto [low, high] = value_of<std::array<std::array<double, 3>, 2>>(object, where);
+    return {Vec3{low[0], low[1], low[2]}, Vec3{high[0], high[1], high[2]}};
+  } else if constexpr (is_a<T, SharedArray>) {
+    return value_of<std::vector<std::remove_cvref_t<decltype(T()[0])>>>(object, where);
   } else if constexpr (is_a<T, std::optional>) {
     if (object.is_none()) return std::nullopt;
     return value_of<typename T::value_type>(object, where);
@@ -215,13 +245,7 @@ T value_of(py::handle object, const std::string& where) {
       all[i] = value_of<typename T::value_type>(py::object(sequence[i]), where + "[" + std::to_string(i) + "]");
     return all;
   } else if constexpr (Struct<T>) {
-    if (!py::isinstance(object, class_of<T>())) refuse(where, Described<T>::name, object);
-    T settings;
-    Described<T>::members(settings, [&](const char* name, auto& member, auto...) {
-      member = value_of<std::remove_cvref_t<decltype(member)>>(py::object(object.attr(name)), where + "." + name);
-    });
-    if constexpr (Tabled<T>) check(settings, where);
-    return settings;
+    return settings_of<T>(object, where);
   } else {
     return number_of<T>(object, where);
   }
@@ -298,6 +322,18 @@ py::object to_python(const helios::SurveySettings& settings) { return object_of(
 helios::SurveySettings survey_of(py::handle settings) {
   return value_of<helios::SurveySettings>(settings, "SurveySettings");
 }
+
+helios::LegScannerSettings leg_scanner_of(py::handle settings) {
+  return value_of<helios::LegScannerSettings>(settings, "LegScannerSettings");
+}
+
+BlockFlight block_flight_of(py::handle settings) { return value_of<BlockFlight>(settings, "BlockFlight"); }
+
+SurfaceLaw law_of(py::handle law) {
+  return std::visit([](const auto& of_kind) { return SurfaceLaw(of_kind); }, value_of<AnyLaw>(law, "law"));
+}
+
+py::object to_python(const std::vector<helios::LegSettings>& legs) { return object_of(legs); }
 
 py::object to_python(const helios::AssetDocument& assets) {
   py::dict all;

@@ -774,6 +774,42 @@ TEST_CASE("legs are beside where they should be by chance, alike for the same se
   CHECK(origin(compile_survey(s, flat, {.seed = 5}), 0) != origin(compile_survey(s, flat, {.seed = 6}), 0));
 }
 
+TEST_CASE("errors of calibration are the same in all legs, and drifts are those of each") {
+  SurveySettings s = survey_of(PlatformKind::stationary, {{1, 2, 3}, {1, 2, 3}});
+  for (LegSettings& leg : s.legs) leg.duration_max = 1;
+  const auto off = [&](std::size_t leg, std::uint64_t seed) {
+    const CompiledSurvey compiled = compile_survey(s, flat, {.seed = seed});
+    const auto p = compiled.source.pulse(compiled.legs[leg].first + 7);
+    return p->reported->position - p->pose.position;
+  };
+  s.platform.pose_errors.lever_arm_deviation = {0, 0, 0.5};
+  CHECK(length(off(0, 4) - off(1, 4)) < 1e-12);
+  CHECK(length(off(0, 4) - off(0, 5)) > 1e-3);
+  s.platform.pose_errors = {.position_drift = {0.5, 0, 0}};
+  CHECK(length(off(0, 4) - off(1, 4)) > 1e-3);
+  CHECK_FALSE(compile_survey(s, flat, {.platform_noise = false}).source.pulse(7)->reported);
+}
+
+TEST_CASE("a leg follows poses of the program by their name, from its start to its end") {
+  SurveySettings s = survey_of(PlatformKind::interpolated, {{}});
+  TrajectorySettings& trajectory = s.legs[0].platform.trajectory.emplace();
+  trajectory.file = "drive";
+  trajectory.start = 11;
+  trajectory.end = 12.5;
+  const SurveyBuildOptions options{
+      .trajectories = {{"drive", {{10, {0, 0, 5}}, {12, {8, 0, 5}, rotation_about(axis::up, 1)}, {13, {8, 2, 5}}}}}};
+  const CompiledSurvey compiled = compile_survey(s, flat, options);
+  CHECK(compiled.legs[0].end == 1500);
+  const auto at = [&](double time) { return compiled.source.legs()[0].path().at(Tick::of_seconds(time)); };
+  CHECK(length(at(0).position - Vec3{4, 0, 5}) < 1e-12);
+  CHECK(length(at(1.5).position - Vec3{8, 1, 5}) < 1e-12);
+  CHECK(length(at(0.5).rotation * axis::forward - rotation_about(axis::up, 0.75) * axis::forward) < 1e-12);
+  trajectory.start = 14;
+  trajectory.end.reset();
+  CHECK_THROWS_WITH_AS((void)compile_survey(s, flat, options), doctest::Contains("leg 0: tStart to tEnd"),
+                       SettingError);
+}
+
 TEST_CASE("what is wrong with an optic names its leg") {
   SurveySettings s = survey_of(PlatformKind::stationary, {{}, {}});
   for (LegSettings& leg : s.legs) leg.duration_max = 1;

@@ -249,6 +249,33 @@ struct MountErrorSettings {
   bool operator==(const MountErrorSettings&) const = default;
 };
 
+/// Random errors of reported poses, of this library: `<poseErrors>`. As `PoseErrors`, along and about the axes of the
+/// body; those of boresight about the axes of the scanner.
+struct PoseErrorSettings {
+  Vec3 position_drift{};         ///< of a Gauss-Markov process; `positionDriftX_m`, Y and Z [m]
+  Vec3 attitude_drift{};         ///< of the same kind; `attitudeDriftX_deg`, Y and Z [rad]
+  double drift_time = 60;        ///< decay of drifts to 1/e; `driftTime_s` [s]
+  double angular_jitter = 0;     ///< unreported turn of each beam; `angularJitter_deg` [rad]
+  Vec3 lever_arm_deviation{};    ///< drawn once for all legs; `leverArmX_m`, Y and Z [m]
+  Vec3 boresight_deviation{};    ///< drawn once for all legs; `boresightX_deg`, Y and Z [rad]
+  double latency_deviation = 0;  ///< of the clock of poses, drawn once for all legs; `latency_s` [s]
+
+  void fields(FieldIo& io) {
+    if (io.reads()) *this = {};
+    const auto axes = [&io](std::array<const char*, 3> names, Vec3& v, const XmlUnit& unit, double most) {
+      for (int k = 0; k < 3; ++k) io.number(names[static_cast<std::size_t>(k)], v[k], unit, 0, most);
+    };
+    axes({"positionDriftX_m", "positionDriftY_m", "positionDriftZ_m"}, position_drift, units::metre, 1e6);
+    axes({"attitudeDriftX_deg", "attitudeDriftY_deg", "attitudeDriftZ_deg"}, attitude_drift, units::degree, 180);
+    io.number("driftTime_s", drift_time, units::second, 1e-3, 1e9);
+    io.number("angularJitter_deg", angular_jitter, units::degree, 0, 180);
+    axes({"leverArmX_m", "leverArmY_m", "leverArmZ_m"}, lever_arm_deviation, units::metre, 1e6);
+    axes({"boresightX_deg", "boresightY_deg", "boresightZ_deg"}, boresight_deviation, units::degree, 180);
+    io.number("latency_s", latency_deviation, units::second, 0, 1e3);
+  }
+  bool operator==(const PoseErrorSettings&) const = default;
+};
+
 /// `<platform>`, with the overrides of the survey.
 struct PlatformSettings {
   std::string id{};                                              ///< `id`
@@ -260,6 +287,7 @@ struct PlatformSettings {
   std::array<std::optional<NoiseSettings>, 3> position_noise{};  ///< `<positionXNoise>`... [m]
   std::array<std::optional<NoiseSettings>, 3> attitude_noise{};  ///< `<attitudeXNoise>`... [rad]
   MountErrorSettings mount_error{};                              ///< `<mountError>`
+  PoseErrorSettings pose_errors{};                               ///< `<poseErrors>`
 
   bool operator==(const PlatformSettings&) const = default;
 };

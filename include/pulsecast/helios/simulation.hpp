@@ -8,6 +8,7 @@
 #include <pulsecast/io/point_columns.hpp>
 #include <pulsecast/io/spatial_reference.hpp>
 #include <pulsecast/run.hpp>
+#include <pulsecast/scene/motion.hpp>
 #include <pulsecast/shape/mesh_data.hpp>
 
 /// Surveys of XML documents, ready to run. `make_simulation` makes them; running them needs only this header.
@@ -43,12 +44,16 @@ struct ReceiverOverrides {
 /// for several threads; other repetitions and receivers give other simulations.
 class Simulation {
  public:
-  /// Triangles of one material, in addition to the survey's own parts.
+  /// Triangles in addition to the survey's own parts.
   struct Mesh {
-    MeshData data{};          ///< triangles, in the world [m]
-    Material material{};      ///< material of all triangles
-    ObjectId object = 0;      ///< object number of its points
-    Attributes attributes{};  ///< named numbers of its points; empty without
+    MeshData data{};                             ///< triangles, in the world or, with placements, in their frame [m]
+    Material material{};                         ///< material of all triangles
+    ObjectId object = 0;                         ///< object number of its points; of the first of several placements
+    Attributes attributes{};                     ///< named numbers of its points; empty without
+    std::vector<Material> materials{};           ///< by `MeshData::materials`, instead of `material`; empty without
+    std::vector<Placement> placements{};         ///< parts that share the triangles; empty: one, where they are
+    std::vector<ObjectId> objects{};             ///< of each placement; empty: numbers from `object` on
+    std::shared_ptr<const PartMotion> motion{};  ///< of each placement; empty: at rest
   };
 
   /// Options of loading.
@@ -66,11 +71,13 @@ class Simulation {
     bool leg_noise = true;                        ///< random leg offsets as in the survey; false: none
     std::vector<std::filesystem::path> assets{};  ///< their folders `spectra` describe materials
     std::vector<Mesh> meshes{};                   ///< meshes in addition to the survey's own parts
-    std::vector<std::string> leg_places{};        ///< places of the legs in their document, for messages
-    std::string place{};                          ///< place of the survey in its document, for messages
-    unsigned threads = 0;                         ///< threads that build the scene; 0: all
-    CityReader city_models{};                     ///< empty: CityGML files are an error
-    io::MapProjector projector{};                 ///< of trajectories by longitude and latitude
+    /// Trajectories by the name that `TrajectorySettings::file` has, instead of a file: as `Waypoints`.
+    std::map<std::string, std::vector<TimedPose>> trajectories{};
+    std::vector<std::string> leg_places{};  ///< places of the legs in their document, for messages
+    std::string place{};                    ///< place of the survey in its document, for messages
+    unsigned threads = 0;                   ///< threads that build the scene; 0: all
+    CityReader city_models{};               ///< empty: CityGML files are an error
+    io::MapProjector projector{};           ///< of trajectories by longitude and latitude
   };
 
   /// Size of a loaded scene.

@@ -32,9 +32,9 @@ struct CompiledSurvey {
                                             const SurveyBuildOptions& options = {});
 
 /// Checks legs and scanner without the scene; returns warnings. @throws SettingError, FileError
-[[nodiscard]] std::vector<std::string> check_without_scene(const SurveySettings& survey,
-                                                           const std::vector<std::string>& leg_places = {},
-                                                           const io::MapProjector& projector = {});
+[[nodiscard]] std::vector<std::string> check_without_scene(
+    const SurveySettings& survey, const std::vector<std::string>& leg_places = {},
+    const io::MapProjector& projector = {}, const std::map<std::string, std::vector<TimedPose>>& trajectories = {});
 
 }  // namespace PULSECAST_NAMESPACE::helios
 
@@ -92,11 +92,14 @@ class SurveyCompiler {
       Instrument instrument = naming(name, [&] { return Instrument(survey_.scanner, leg.scanner, duration, options); });
       const Tick time = instrument.duration();
       if (active) optic_time += time.seconds();
-      SurveyNoise noise{.seed = options_.seed + 0x9e3779b97f4a7c15U * (k + 1)};
+      SurveyNoise noise{.seed = options_.seed + 0x9e3779b97f4a7c15U * (k + 1),
+                        .survey_seed = options_.seed,
+                        .leg = static_cast<std::uint32_t>(k)};
       if (options_.platform_noise) {
         noise.position = survey_.platform.position_noise;
         noise.attitude = survey_.platform.attitude_noise;
         noise.mount = survey_.platform.mount_error;
+        noise.errors = survey_.platform.pose_errors;
       }
       const auto known = paths_[k].clock ? std::optional(Tick::of_seconds(duration)) : std::nullopt;
       legs.push_back({SurveyLeg(path, mount, std::move(instrument), std::move(noise), known), active, start});
@@ -168,12 +171,13 @@ PULSECAST_INLINE CompiledSurvey compile_survey(const SurveySettings& survey, con
   return compiled;
 }
 
-PULSECAST_INLINE std::vector<std::string> check_without_scene(const SurveySettings& survey,
-                                                              const std::vector<std::string>& leg_places,
-                                                              const io::MapProjector& projector) {
+PULSECAST_INLINE std::vector<std::string> check_without_scene(
+    const SurveySettings& survey, const std::vector<std::string>& leg_places, const io::MapProjector& projector,
+    const std::map<std::string, std::vector<TimedPose>>& trajectories) {
   const auto ground = [](const Vec2&) -> std::optional<double> { return 0; };
   std::vector<std::string> warnings =
-      compile_survey(survey, ground, {.leg_places = leg_places, .projector = projector}).warnings;
+      compile_survey(survey, ground, {.leg_places = leg_places, .projector = projector, .trajectories = trajectories})
+          .warnings;
   for (const ChannelSettings& channel : survey.scanner.channels) {
     const Receiver receiver = survey_receiver(channel);
     receiver.validate();

@@ -38,7 +38,7 @@ def mypy(tmp_path_factory):
 ALLOWED = r"""
 pulsecast\.(_core\.)?(Batch|Medium|Mesh|RaycastingScene|Simulation|SmoothInterface)
 pulsecast\.(_core\.)?(Batch|SmoothInterface)\.(__init__|__pybind11_module_local_.*)
-pulsecast\.(_core\.)?(ConicOptic|NoMotion)\.__match_args__
+pulsecast\.(_core\.)?(ConicOptic|DirectionIndependent|Lambert|NoMotion)\.__match_args__
 """
 
 

@@ -14,12 +14,13 @@ channel.waveform.rings = 1
 survey = pulsecast.SurveySettings(
     name="floor",
     scanner=pulsecast.ScannerSettings(id="scanner", pulse_rates=[10_000], channels=[channel]),
-    legs=[pulsecast.LegSettings(scanner=pulsecast.LegScannerSettings(scan_rate=50, head_rate=3, head_stop=3))],
+    legs=[pulsecast.LegSettings(scanner=pulsecast.LegScannerSettings(scan_rate=50, head_rate=3, head_stop_deg=170))],
 )
 survey.legs[0].platform.position = (0, 0, 2)
 for leg in survey.legs:
     leg.platform.position = (*leg.platform.position[:2], 3)
 survey.platform.kind = "stationary"
+survey.platform.mount = pulsecast.platform("tripod").mount
 
 floor = pulsecast.Mesh([[-50, -50, 0], [50, -50, 0], [50, 50, 0], [-50, 50, 0]], np.array([[0, 1, 2], [0, 2, 3]]), ground=True)
 batches: list[pulsecast.Batch] = []
@@ -48,3 +49,6 @@ if TYPE_CHECKING:
     simulation.memory = 0  # wrong
     simulation.bounds[0]  # wrong: may be None
     channel.optic = 3  # wrong
+    pulsecast.LegScannerSettings(pulse_rate_deg=3)  # wrong
+    survey.legs[0].scanner.head_stop_deg = "90"  # wrong
+    pulsecast.scanner(400)  # wrong

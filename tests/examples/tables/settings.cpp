@@ -50,6 +50,7 @@ int main() {
   print<AxisTurn>("AxisTurn");
   print<NoiseSettings>("NoiseSettings");
   print<MountErrorSettings>("MountErrorSettings");
+  print<PoseErrorSettings>("PoseErrorSettings");
   print<TrajectorySettings>("TrajectorySettings");
   print<TrajectoryIndices>("TrajectoryIndices");
   print<ChannelSettings>("ChannelSettings", {.optic = ConicOptic{}});

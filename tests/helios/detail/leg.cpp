@@ -51,12 +51,15 @@ TEST_CASE("points err as a leg states of the noise in its document") {
       {.position = {std::nullopt, std::nullopt, clipped}},
       {.position = {uniform_noise(0.01, 0.05), std::nullopt, std::nullopt}},
       {.attitude = {normal_noise(1e-4), normal_noise(2e-4), normal_noise(3e-4, 0)}},
-      {.attitude = {uniform_noise(-1e-4, 3e-4), std::nullopt, std::nullopt}}};
+      {.attitude = {uniform_noise(-1e-4, 3e-4), std::nullopt, std::nullopt}},
+      {.errors = {.position_drift = {0.01, 0.02, 0.03}, .drift_time = 5}},
+      {.errors = {.attitude_drift = {1e-4, 2e-4, 3e-4}, .angular_jitter = 1e-4}},
+      {.errors = {.lever_arm_deviation = {0.01, 0.02, 0.03}, .boresight_deviation = {1e-4, 2e-4, 3e-4}}}};
   for (std::size_t kind = 0; kind < kinds.size(); ++kind) {
     CAPTURE(kind);
     const auto seeded = [&](std::uint64_t seed) {
       SurveyNoise noise = kinds[kind];
-      noise.seed = seed;
+      noise.seed = noise.survey_seed = seed;
       return leg_with(noise);
     };
     CHECK(support::error_laws(seeded, 100 + 50 * kind, 200) == "");

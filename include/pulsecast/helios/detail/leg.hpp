@@ -3,11 +3,13 @@
 #ifndef PULSECAST_HELIOS_DETAIL_LEG_HPP
 #define PULSECAST_HELIOS_DETAIL_LEG_HPP
 
+#include <map>
+
 #include <pulsecast/helios/instrument.hpp>
 #include <pulsecast/io/trajectory.hpp>
 #include <pulsecast/platform/ground_vehicle.hpp>
 #include <pulsecast/platform/multicopter.hpp>
-#include <pulsecast/platform/platform.hpp>
+#include <pulsecast/platform/pose_errors.hpp>
 #include <pulsecast/platform/straight_line.hpp>
 #include <pulsecast/platform/tripod.hpp>
 
@@ -21,7 +23,8 @@ struct SurveyBuildOptions {
   /// Place of each leg in its document, as in `survey.xml:12:5`. If empty, as for settings of a
   /// program, the notes of `read_survey` are given with the others.
   std::vector<std::string> leg_places{};
-  io::MapProjector projector{};  ///< of trajectories by longitude and latitude
+  io::MapProjector projector{};                                  ///< of trajectories by longitude and latitude
+  std::map<std::string, std::vector<TimedPose>> trajectories{};  ///< as `Simulation::Settings::trajectories`
 
   /// Name of a leg for messages.
   [[nodiscard]] std::string leg_name(std::size_t k) const {
@@ -87,9 +90,24 @@ struct SurveyNoise {
   AxisNoise attitude{};  ///< about right, forward and up of the beam [rad]
   MountErrorSettings mount{};
   std::uint64_t seed = 0;
+  PoseErrorSettings errors{};
+  std::uint64_t survey_seed = 0;  ///< of the errors; those of calibration are the same in all legs
+  std::uint32_t leg = 0;          ///< number of the leg
 
   [[nodiscard]] bool none() const {
     return position == AxisNoise{} && attitude == AxisNoise{} && mount == MountErrorSettings{};
+  }
+
+  [[nodiscard]] PoseErrors pose_errors() const {
+    const auto axes = [](const Vec3& v) { return AxisDeviations(v.x, v.y, v.z); };
+    return {.position_drift = axes(errors.position_drift),
+            .attitude_drift = axes(errors.attitude_drift),
+            .drift_time = errors.drift_time,
+            .angular_jitter = errors.angular_jitter,
+            .seed = survey_seed,
+            .lever_arm_deviation = axes(errors.lever_arm_deviation),
+            .boresight_deviation = axes(errors.boresight_deviation),
+            .latency_deviation = errors.latency_deviation};
   }
 
   [[nodiscard]] Vec3 draw(const AxisNoise& noise, PulseIndex slot, Purpose purpose) const noexcept {
@@ -155,7 +173,11 @@ class SurveyLeg {
         positions_(SurveyNoise::stated(noise_.position)),
         attitudes_(SurveyNoise::stated(noise_.attitude)),
         noisy_(!noise_.none()),
-        known_(std::min(known.value_or(truth_.duration()), truth_.duration())) {}
+        known_(std::min(known.value_or(truth_.duration()), truth_.duration())) {
+    if (noise_.errors == PoseErrorSettings{}) return;
+    erring_.emplace(truth_, noise_.pose_errors());
+    erring_->draw_for_leg(noise_.leg);
+  }
 
   [[nodiscard]] PulseIndex size() const noexcept { return truth_.size(); }
   [[nodiscard]] Tick duration() const noexcept { return truth_.duration(); }
@@ -164,7 +186,7 @@ class SurveyLeg {
   [[nodiscard]] std::optional<Pulse<frame::World>> pulse(PulseIndex i) const noexcept { return pulse_lanes(i, 1)[0]; }
 
   [[nodiscard]] PulseLanes<frame::World> pulse_lanes(PulseIndex i, std::size_t count) const noexcept {
-    auto out = truth_.pulse_lanes(i, count);
+    auto out = erring_ ? erring_->pulse_lanes(i, count) : truth_.pulse_lanes(i, count);
     for (std::size_t lane = 0; noisy_ && lane < out.size; ++lane) {
       if (out.sent[lane] == 0) continue;
       const PulseIndex slot = (i + lane) / truth_.source().channels();
@@ -187,7 +209,7 @@ class SurveyLeg {
 
   template <class Visit>
   void visit_errors(PulseIndex i, Tick t, const Visit& visit) const noexcept {
-    truth_.visit_errors(i, t, visit);
+    erring_ ? erring_->visit_errors(i, t, visit) : truth_.visit_errors(i, t, visit);
     for (const auto& [error, scope] : positions_) visit(PoseError<frame::World>{.moved = error, .scope = scope});
     if (mount_error_) {
       const auto body = path().at(t);
@@ -218,6 +240,7 @@ class SurveyLeg {
   }
 
   Platform<SurveyPath, Instrument> truth_;
+  std::optional<WithPoseErrors<SurveyPath, Instrument>> erring_{};  // if there are such errors
   SurveyNoise noise_;
   std::optional<InBody> mount_error_;
   std::vector<SurveyNoise::Stated> positions_, attitudes_;

@@ -3,8 +3,6 @@
 #ifndef PULSECAST_HELIOS_DETAIL_LEG_PATHS_HPP
 #define PULSECAST_HELIOS_DETAIL_LEG_PATHS_HPP
 
-#include <map>
-
 #include <pulsecast/helios/detail/leg.hpp>
 #include <pulsecast/helios/detail/passing.hpp>
 
@@ -32,6 +30,26 @@ namespace PULSECAST_NAMESPACE::helios {
   const auto is_taken = [&](const std::string& column) { return std::ranges::count(format.columns, column) == 0; };
   std::erase_if(format.left_out, is_taken);
   return format;
+}
+
+/// Poses of a program from one time to another, on a clock that starts there. @throws SettingError
+[[nodiscard]] inline io::TrajectoryTable poses_within(std::vector<TimedPose> poses, const TrajectorySettings& window) {
+  const Waypoints path(poses);
+  const double first = poses.front().time, last = poses.back().time;
+  const double start = std::max(first, window.start.value_or(first)), end = std::min(last, window.end.value_or(last));
+  if (!(start <= end))
+    throw SettingError(
+        "tStart to tEnd (end)", end, "s",
+        text::joined({"within the poses, from ", text::to_text(first), " s to ", text::to_text(last), " s"}));
+  const auto at = [&](double time) {
+    const Pose<frame::Body, frame::World> pose = path.at(Tick::of_seconds(time));
+    return TimedPose{time, pose.position, pose.rotation};
+  };
+  std::erase_if(poses, [&](const TimedPose& pose) { return pose.time <= start || pose.time >= end; });
+  poses.insert(poses.begin(), at(start));
+  if (end > start) poses.push_back(at(end));
+  for (TimedPose& pose : poses) pose.time -= start;
+  return {.start_time = start, .poses = std::move(poses), .warnings = {}};
 }
 
 /// Path and duration of a leg.
@@ -254,6 +272,14 @@ class LegPaths {
     }
   }
 
+  [[nodiscard]] io::TrajectoryTable table_of(const TrajectorySettings& t) const {
+    const auto given = options_.trajectories.find(t.file.string());
+    if (given != options_.trajectories.end()) return poses_within(given->second, t);
+    io::TrajectoryFormat format = trajectory_format(t, survey_.platform.rotation_spec);
+    format.projector = options_.projector;
+    return io::read_trajectory(t.file, format, {t.start, t.end});
+  }
+
   void follow() {
     struct Key {
       std::string file;
@@ -272,9 +298,7 @@ class LegPaths {
       t->separator = of_file.separator;
       const Key key{t->file.string(), t->start, t->end};
       if (!tables.contains(key)) {
-        io::TrajectoryFormat format = trajectory_format(*t, survey_.platform.rotation_spec);
-        format.projector = options_.projector;
-        auto table = naming(leg_name(k), [&] { return io::read_trajectory(t->file, format, {t->start, t->end}); });
+        auto table = naming(leg_name(k), [&] { return table_of(*t); });
         for (const std::string& warning : table.warnings) warn(warning);
         if (t->position_only) table.poses = with_headings(std::move(table.poses));
         tables.emplace(key, std::move(table));

@@ -4,6 +4,7 @@
 #define PULSECAST_HELIOS_DETAIL_LOADED_SIMULATION_HPP
 
 #include <pulsecast/helios/detail/adjustable.hpp>
+#include <pulsecast/helios/detail/mesh_parts.hpp>
 #include <pulsecast/helios/detail/scene_files.hpp>
 #include <pulsecast/helios/detail/survey_pipeline.hpp>
 #include <pulsecast/helios/make_simulation.hpp>
@@ -89,10 +90,7 @@ struct SimulationInputs {
   SimulationInputs(const SurveySettings& of_survey, const Simulation::Settings& with, const PartProvider& parts)
       : survey(of_survey), settings(with), provider(parts) {
     for (const Simulation::Mesh& mesh : settings.meshes)
-      meshes.push_back({.geometry = std::make_shared<const MaskedMesh<>>(mesh.data, settings.threads),
-                        .materials = material_table({mesh.material}),
-                        .object = mesh.object,
-                        .attributes = mesh.attributes});
+      for (SurveyPart& part : parts_of<SurveyPart>(mesh, settings.threads)) meshes.push_back(std::move(part));
   }
 
   [[nodiscard]] SceneBuilder builder() const {
@@ -132,8 +130,8 @@ struct LoadedRepetition {
     scene = std::make_shared<const SurveyScene>(parts, MovingIndexSettings{.to = 1});
     const auto ground = [&](const Vec2& at, auto... near) { return scene->ground_height(at, near...); };
     const Simulation::Settings& s = inputs->settings;
-    compiled =
-        compile_survey(inputs->survey, ground, {s.seed, s.platform_noise, s.leg_noise, s.leg_places, s.projector});
+    compiled = compile_survey(inputs->survey, ground,
+                              {s.seed, s.platform_noise, s.leg_noise, s.leg_places, s.projector, s.trajectories});
     const double duration = compiled->source.duration().seconds();
     if (std::any_of(parts.begin(), parts.end(), [](const SurveyPart& p) { return p.motion != nullptr; }))
       scene = std::make_shared<const SurveyScene>(parts, MovingIndexSettings{.to = std::max(1e-3, duration)});

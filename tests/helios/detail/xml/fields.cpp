@@ -119,12 +119,13 @@ int all_refused_beyond_limits(const Settings&... defaults) {
 // ----------------------------------------------------------------------------------------- limits
 
 TEST_CASE("each number of all settings has its limits in programs and in documents") {
-  CHECK(all_refused_beyond_limits(
-            AxisTurn{}, MountSettings{}, ChannelSettings{.optic = OscillatingOptic{}}, RotatingOptic{}, LineOptic{},
-            RisleyOptic{}, FullWaveformSettings{}, NoiseSettings{}, MountErrorSettings{}, MulticopterDynamics{},
-            LegOffsetSettings{}, LegPlatformSettings{}, LegScannerSettings{}, TrajectorySettings{}, TrajectoryIndices{},
-            SceneSettings{}, PartSettings{}, LightSettings{}, MediumSettings{}, MotionSequenceSettings{},
-            SwapSettings{}, MaterialSource{}, GeoTiffSource{}, XyzSource{}, VoxelSource{}, MeshSource{}) > 90);
+  CHECK(all_refused_beyond_limits(AxisTurn{}, MountSettings{}, ChannelSettings{.optic = OscillatingOptic{}},
+                                  RotatingOptic{}, LineOptic{}, RisleyOptic{}, FullWaveformSettings{}, NoiseSettings{},
+                                  MountErrorSettings{}, PoseErrorSettings{}, MulticopterDynamics{}, LegOffsetSettings{},
+                                  LegPlatformSettings{}, LegScannerSettings{}, TrajectorySettings{},
+                                  TrajectoryIndices{}, SceneSettings{}, PartSettings{}, LightSettings{},
+                                  MediumSettings{}, MotionSequenceSettings{}, SwapSettings{}, MaterialSource{},
+                                  GeoTiffSource{}, XyzSource{}, VoxelSource{}, MeshSource{}) > 90);
 }
 
 // ------------------------------------------------------------------------------ mounts, directions
@@ -262,6 +263,11 @@ TEST_CASE("a platform that says nothing has the defaults of the format") {
   const PlatformSettings wrong = from<PlatformSettings>(
       R"(<platform id="p" type="static"><mountError y="0.5" roll_deg="1" pitch_deg="-2" heading_deg="3"/></platform>)");
   CHECK(wrong.mount_error == MountErrorSettings{{0, 0.5, 0}, radians(1), radians(-2), radians(3)});
+  const PlatformSettings drawn = from<PlatformSettings>(
+      R"(<platform id="p" type="static"><poseErrors attitudeDriftZ_deg="1" leverArmX_m="2" latency_s="3"/></platform>)");
+  CHECK(drawn.pose_errors == PoseErrorSettings{.attitude_drift = {0, 0, radians(1)},
+                                               .lever_arm_deviation = {2, 0, 0},
+                                               .latency_deviation = 3});
   CHECK(contains(told<PlatformSettings>(R"(<platform id="p" type="static"><mountError yaw_deg="1"/></platform>)"),
                  "attribute 'yaw_deg' of <mountError> is not known"));
 }

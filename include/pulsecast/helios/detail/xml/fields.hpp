@@ -31,7 +31,8 @@ void valid(const FieldIo& io, const Check& check) {
   }
 }
 
-/// Six noise elements and the error of the mount, of a platform or of a survey; a later one replaces an earlier one.
+/// Six noise elements and the errors of mount and poses, of a platform or of a survey; a later one replaces an earlier
+/// one.
 inline void noise_fields(FieldIo& io, PlatformSettings& platform) {
   static constexpr std::array position{"positionXNoise", "positionYNoise", "positionZNoise"};
   static constexpr std::array attitude{"attitudeXNoise", "attitudeYNoise", "attitudeZNoise"};
@@ -43,6 +44,8 @@ inline void noise_fields(FieldIo& io, PlatformSettings& platform) {
   for (std::size_t i = 0; i < 3; ++i) one(attitude[i], platform.attitude_noise[i]);
   if (io.reads() || platform.mount_error != MountErrorSettings{})
     io.element("mountError", [&](FieldIo& inner) { platform.mount_error.fields(inner); });
+  if (io.reads() || platform.pose_errors != PoseErrorSettings{})
+    io.element("poseErrors", [&](FieldIo& inner) { platform.pose_errors.fields(inner); });
 }
 
 /// Convention of angles, of an interpolated platform.
