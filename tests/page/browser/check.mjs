@@ -240,19 +240,26 @@ async function checkFile() {
 
 /// Clicks a button, or what else has this id, where it is seen.
 async function press(id) {
-  const { x, y, width, height } = await page(`(e => (e.scrollIntoView({ block: 'center' }), e.getBoundingClientRect().toJSON()))(document.getElementById('${id}'))`)
+  const { x, y, width, height } = await page(`(e => {
+    e.scrollIntoView({ block: 'center' })
+    return e.getBoundingClientRect().toJSON()
+  })(document.getElementById('${id}'))`)
   await mouse('mousePressed', x + width / 2, y + height / 2)
   await mouse('mouseReleased', x + width / 2, y + height / 2)
 }
 const texts = id => page(`[...document.querySelectorAll('#${id} dd')].map(e => e.textContent)`)
-const set = (id, value) => page(`(e => { e.value = '${value}', e.dispatchEvent(new Event(e.matches('select') ? 'change' : 'input')) })(document.getElementById('${id}'))`)
+const set = (id, value) => page(`(e => {
+  e.value = '${value}'
+  e.dispatchEvent(new Event(e.matches('select') ? 'change' : 'input'))
+})(document.getElementById('${id}'))`)
 
 /// Two points that are picked where they are drawn, apart in the picture: { i, x, y, place }.
 const twoPoints = () => page(`(() => {
   const { view, points } = pulsecast, { x, y, z } = points.arrays, found = []
   for (let i = 0; found.length < 2; i += 97) {
     const place = [x[i], y[i], z[i]], [sx, sy] = view.camera.project(view.relative(place)).map(v => v / view.ratio)
-    if (view.pick(sx * view.ratio, sy * view.ratio) === i && !found.some(f => Math.hypot(f.x - sx, f.y - sy) < 100)) found.push({ i, x: sx, y: sy, place })
+    if (view.pick(sx * view.ratio, sy * view.ratio) === i && !found.some(f => Math.hypot(f.x - sx, f.y - sy) < 100))
+      found.push({ i, x: sx, y: sy, place })
   }
   return found
 })()`)
@@ -333,8 +340,8 @@ async function checkChoice() {
   expect(await page(`document.querySelectorAll('#attributes [tabindex="0"]').length`) === 1, 'one stop')
   const names = await page(`[...document.querySelectorAll('#attributes button')].map(b => b.dataset.name)`)
   const first = await page('pulsecast.colouring.name')
-  for (const [press, name] of [['End', names.at(-1)], ['ArrowRight', names[0]], ['ArrowDown', names[1]], ['ArrowLeft', names[0]], ['ArrowUp', names.at(-1)],
-                               ['Home', names[0]]]) {
+  for (const [press, name] of [['End', names.at(-1)], ['ArrowRight', names[0]], ['ArrowDown', names[1]], ['ArrowLeft', names[0]],
+                               ['ArrowUp', names.at(-1)], ['Home', names[0]]]) {
     await key(press)
     expect(await page(`pulsecast.colouring.name`) === name && await page('document.activeElement.dataset.name') === name, `${press} chooses ${name}`)
   }
@@ -359,7 +366,8 @@ async function checkNames() {
     prototype.fillText = function (text, x, y) { written.push([text, x, y, this.measureText(text).width]); fillText.call(this, text, x, y) }
     view.drawFrame(performance.now())
     prototype.fillText = fillText
-    return { names: written.filter(([text]) => text.startsWith('set-up')), marks: view.ways.map(w => view.camera.project(view.relative(w.places[0]))) }
+    const marks = view.ways.map(way => view.camera.project(view.relative(way.places[0])))
+    return { names: written.filter(([text]) => text.startsWith('set-up')), marks }
   })()`)
   const { names, marks } = boxes
   expect(names.length >= 3, `${names.length} names are seen`)
@@ -437,7 +445,8 @@ async function measureSpeed() {
     await open(`file://${folder}/page.html?painter=${painter}`)
     await rest()
     for (const points of ['all', 700000, 'as many as keep the pace']) {
-      await page(`pulsecast.view.adaptive = ${points !== 'all'}, pulsecast.view.keepPace = ${points > 0} ? () => {} : Object.getPrototypeOf(pulsecast.view).keepPace`)
+      await page(`pulsecast.view.adaptive = ${points !== 'all'}`)
+      await page(`pulsecast.view.keepPace = ${points > 0} ? () => {} : Object.getPrototypeOf(pulsecast.view).keepPace`)
       if (points > 0) await page(`pulsecast.view.budget = ${points}`)
       const before = await processorTime()
       const { count, frames, seconds, drawn } = await page(`(async () => {

@@ -31,7 +31,8 @@ const attributes = {
   scan_angle: { label: 'Scan angle', unit: '°' },
   width: { label: 'Echo width', unit: 'ns' },
   time: { label: 'Time', unit: 's' },
-  leg: { get label() { return survey.legs.length > 1 && survey.legs.every(leg => leg.places?.length === 1) ? 'Set-up' : 'Leg' }, list: true, name: v => survey.legs[v]?.name ?? String(v) },
+  leg: { get label() { return survey.legs.length > 1 && survey.legs.every(leg => leg.places?.length === 1) ? 'Set-up' : 'Leg' }, list: true,
+         name: v => survey.legs[v]?.name ?? String(v) },
   channel: { label: 'Channel', list: true },
   kind: { label: 'Light', list: true, colour: v => survey.colours.light[v], name: v => kindNames[v] ?? String(v) },
 }

@@ -47,7 +47,9 @@ function sampled(each = Math.max(64, Math.ceil(2000 / points.chunks.length))) {
   for (const { first, count } of points.chunks)
     for (const k of points.pack.subarray(0, each)) {
       const i = first + k
-      if (k < count && time[i] <= view.start + view.now && !view.hides(i) && view.inSlab([x[i], y[i], z[i]])) places.push(inPicture([x[i], y[i], z[i]]))
+      if (!(k < count && time[i] <= view.start + view.now) || view.hides(i)) continue
+      const place = [x[i], y[i], z[i]]
+      if (view.inSlab(place)) places.push(inPicture(place))
     }
   return places
 }

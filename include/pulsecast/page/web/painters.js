@@ -211,7 +211,8 @@ class PlainPainter {
 
   draw(chunk, first, end, { matrix, near, size, least, most, now, trail, fresh, slab, many }) {
     const { width, height } = this, { depths, colours } = this.drawn, { places, colours: tints } = chunk
-    const growth = this.growth = many ? Math.max(0, Math.round(least) - 1) : 0, small = least < growth + 1.5 ? size / (growth + 1.5) : Infinity  // beyond: one pixel
+    const growth = this.growth = many ? Math.max(0, Math.round(least) - 1) : 0
+    const small = least < growth + 1.5 ? size / (growth + 1.5) : Infinity  // points that are deeper are one pixel
     const [a0, a1, , a3, b0, b1, , b3, c0, c1, , c3, d0, d1, , d3] = matrix
     const across = [a0 + a3, b0 + b3, c0 + c3, d0 + d3].map(v => v * width / 2), down = [a3 - a1, b3 - b1, c3 - c1, d3 - d1].map(v => v * height / 2)
     const [ax, bx, cx, dx] = across, [ay, by, cy, dy] = down, shift = growth / 2

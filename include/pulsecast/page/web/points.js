@@ -64,7 +64,8 @@ class Points {
       const k = Math.floor(seed / 4294967296 * (i + 1)), card = pack[i]
       pack[i] = pack[k], pack[k] = card
     }
-    for (let begin = Points.chunkSize / 8; begin < Points.chunkSize; begin += 1024) pack.subarray(begin, begin + 1024).sort()  // neighbours: less cache missed
+    for (let begin = Points.chunkSize / 8; begin < Points.chunkSize; begin += 1024)
+      pack.subarray(begin, begin + 1024).sort()  // neighbours in time are neighbours in the picture, whose memory is at hand
     this.pack = pack
   }
 
