@@ -58,12 +58,16 @@ BEGIN {
   says["columns"] = "Number of columns."
   says["fail_at_line"] = says["fail_at_byte"] = "Throws a FileError of a problem, at a place in this file."
   says["reads_empty_shots"] = "As the concept ChoosesShots describes."
+  says["emitter_count"] = "Number of emitters."
+  says["mean_specific_force"] = "As `mean_angular_rate`, of the specific force [m/s^2]."
+  says["derivatives_at"] = "Pose of the sensor in the world, and its derivatives."
+  says["grid"] = "Places of the points of a scan, by row and column."
   says["normal"] = "Unit normal at the hit of ray j; zero for a surface without direction."
   tag = "Empty object, to be filled by `archive`."
   overrides = "Overrides the function of the base class."
   variable_type = "^ +(alignas\\(.*\\) |static |constexpr |const )*[A-Za-z_][A-Za-z0-9_:]*(<[^ ]*(, [0-9]+)?>)? "
   variables = "^[a-z_]+(\\[[0-9]\\])*({}| = [^,()]*)?(, [a-z_]+(\\[[0-9]\\])*({}| = [^,()]*)?)*$"
-  function_of_a_class = "^ +(\\[\\[[a-z:]+\\]\\] |static |constexpr |friend |inline )*[A-Za-z_][A-Za-z0-9_:<>, ]*[&* ]+([a-z_]+(==)?|operator\\[\\]|operator\\(\\))\\("
+  function_of_a_class = "^ +(\\[\\[[a-z_:]+\\]\\] |static |constexpr |friend |inline )*[A-Za-z_][A-Za-z0-9_:<>, ]*[&* ]+([a-z_]+(==)?|operator\\[\\]|operator\\(\\))\\("
 }
 FILENAME ~ /\.md$/ {
   while (match($0, /\]\((docs\/[A-Za-z\/_-]*(\.md|\.ipynb)|examples\/[a-z_.]*|[A-Z]*\.md)\)/)) {
@@ -100,6 +104,10 @@ hidden {
 function with(text, line) {
   match(line, /^ */)
   return substr(line, 1, RLENGTH) "/** " text " */ " substr(line, RLENGTH + 1)
+}
+/^ +static constexpr bool strides_lanes = / {
+  print with("As the concept StridesLanes describes.", $0)
+  next
 }
 # Explanation of the function declared in a line without a docstring; empty if there is none.
 function explanation(line,   name) {

@@ -2,7 +2,8 @@
 // SPDX-License-Identifier: MIT
 
 // Scanner under a drone: it rises before a hut in a wood, flies rows over the trees, hovers, and comes down again. It
-// banks in turns, and the beam with it. Writes cloud.las, cloud.png and trajectory.txt.
+// banks in turns, and the beam with it. Writes cloud.las, cloud.png, trajectory.txt and page.html, the cloud in a
+// browser.
 
 #include <cmath>
 #include <iostream>
@@ -11,6 +12,7 @@
 #include <pulsecast/io/las.hpp>
 #include <pulsecast/io/png.hpp>
 #include <pulsecast/io/trajectory.hpp>
+#include <pulsecast/page/page.hpp>
 #include <pulsecast/platform/multicopter.hpp>
 #include <pulsecast/pulsecast.hpp>
 
@@ -67,10 +69,14 @@ int main(int argc, char** argv) {
     io::LasWriter las(line.output / "cloud.las");
     io::ImageWriter image(line.output / "cloud.png",
                           {.azimuth = 20_deg, .elevation = 40_deg, .field_of_view = 20_deg, .point_size = 3});
-    const RunSummary summary = run(survey, {.threads = line.threads, .progress = ProgressLine{}}, las, image);
+    page::PageWriter page(
+        line.output / "page.html",
+        {.name = "Wood", .platform = "Drone", .legs = {page::page_leg("flight", flight, {}, flight.duration())}});
+    const RunSummary summary = run(survey, {.threads = line.threads, .progress = ProgressLine{}}, las, image, page);
 
     las.close();
     image.close();
+    page.close();
     io::TrajectoryWriter trajectory(line.output / "trajectory.txt");
     trajectory.add(flight, {}, flight.duration(), 0.1);
     trajectory.close();

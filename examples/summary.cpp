@@ -16,11 +16,10 @@ void ProgressLine::operator()(const pulsecast::Progress& progress) {
   if (progress.done == 0 || (progress.seconds < next_ && !(last && shown_))) return;
   next_ = progress.seconds + interval_;
   shown_ = true;
-  const double done = static_cast<double>(progress.done), total = static_cast<double>(progress.total),
-               rate = done / progress.seconds;
+  const double done = static_cast<double>(progress.done), total = static_cast<double>(progress.total);
   std::cerr << (terminal_ ? "\r" : "") << std::fixed << std::setprecision(0) << std::setw(4) << 100 * done / total
-            << " %  " << std::setprecision(2) << rate / 1e6 << " million pulse slots/s  " << std::setprecision(0)
-            << (total - done) / rate << " s left   " << (terminal_ && !last ? "" : "\n") << std::flush;
+            << " %  " << (total - done) * progress.seconds / done << " s left   " << (terminal_ && !last ? "" : "\n")
+            << std::flush;
 }
 
 void print(const pulsecast::RunSummary& run) {
@@ -33,12 +32,14 @@ void print(const pulsecast::RunSummary& run) {
   };
   std::cout << std::fixed << std::setprecision(2);
   line("pulses", run.pulses(), "");
+  if (run.count(blocked) > 0)
+    line("", run.count(blocked), "more would fall outside the field of view, and are not sent");
   line("echoes", run.echoes, "");
   line("missed", run.count(missed), "pulses, which hit nothing");
   if (run.count(out_of_range) > 0) line("out of range", run.count(out_of_range), "pulses");
   if (run.count(absorbed) > 0) line("absorbed", run.count(absorbed), "pulses");
   if (run.count(below_threshold) > 0) line("too weak", run.count(below_threshold), "pulses");
   line("time", run.seconds, "s");
-  if (run.slots > 0) line("speed", static_cast<double>(run.slots) / run.seconds / 1e6, "million pulse slots/s");
+  if (run.pulses() > 0) line("speed", static_cast<double>(run.pulses()) / run.seconds / 1e6, "million pulses/s");
   line("peak memory", static_cast<double>(usage.ru_maxrss) / 1024, "MiB");  // Linux counts in KiB. Source: getrusage(2)
 }

@@ -2,9 +2,9 @@
 # SPDX-FileCopyrightText: 2026 the pulsecast contributors
 # SPDX-License-Identifier: MIT
 
-# Installs the Debian package on a bare Debian 12, and uses what it brings: program, man page, catalogue, Python module, headers.
-# Needs root, debootstrap and a mirror of Debian; takes a few minutes. Usage: bare_debian.sh PACKAGE.deb [FOLDER]; the system is left in FOLDER,
-# if that is given, and taken from there the next time.
+# Installs the Debian package, or the wheel, on a bare Debian 12, and uses what it brings: program, man page, catalogue, Python module, headers.
+# The wheel has python3-venv and python3-numpy there, no compiler and no network. Needs root, debootstrap and a mirror of Debian; takes a few
+# minutes. Usage: bare_debian.sh PACKAGE.deb [FOLDER], or PACKAGE.whl; the system is left in FOLDER, if that is given, and taken from there the next time.
 set -eu
 here=$(cd "$(dirname "$0")" && pwd)
 package=$1
@@ -21,16 +21,8 @@ trap leave EXIT
 within() { chroot "$root" env LC_ALL=C.UTF-8 DEBIAN_FRONTEND=noninteractive HOME=/root sh -euc "$1"; }
 step() { printf '\n=== %s\n' "$1"; }
 
-step "installing"
+rm -rf "$root/opt/try"
 mkdir -p "$root/opt/try"
-cp "$package" "$root/opt/try/pulsecast.deb"
-cp "$here/../../examples/embed.cpp" "$here/../../tests/examples/python/typed_survey.py" "$root/opt/try/"
-within 'apt-get update -qq && apt-get install --yes -qq --no-install-recommends /opt/try/pulsecast.deb'
-
-step "program, man page, catalogue"
-within 'pulsecast --version; pulsecast-import --version; test -s /usr/share/man/man1/pulsecast.1*; pulsecast catalogue | grep -q riegl_vz400'
-
-step "a survey with the catalogue"
 cat > "$root/opt/try/floor.obj" <<'OBJ'
 v -50 -50 0
 v 50 -50 0
@@ -46,6 +38,26 @@ cat > "$root/opt/try/survey.xml" <<'XML'
   </survey>
 </document>
 XML
+
+case $package in
+  *.whl)
+    step "the wheel, offline"
+    within 'apt-get update -qq && apt-get install --yes -qq --no-install-recommends python3-venv python3-numpy > /dev/null'
+    cp "$package" "$here/../../tests/package/check_wheel.sh" "$root/opt/try/"
+    unshare --net chroot "$root" env LC_ALL=C.UTF-8 HOME=/root sh /opt/try/check_wheel.sh "/opt/try/$(basename "$package")" /opt/try/wheel
+    exit
+    ;;
+esac
+
+step "installing"
+cp "$package" "$root/opt/try/pulsecast.deb"
+cp "$here/../../examples/embed.cpp" "$here/../../tests/examples/python/typed_survey.py" "$root/opt/try/"
+within 'apt-get update -qq && apt-get install --yes -qq --no-install-recommends /opt/try/pulsecast.deb'
+
+step "program, man page, catalogue"
+within 'pulsecast --version; pulsecast-import --version; test -s /usr/share/man/man1/pulsecast.1*; pulsecast catalogue | grep -q riegl_vz400; pulsecast doctor'
+
+step "a survey with the catalogue"
 within 'cd /opt/try && pulsecast survey.xml --format laz --output out --threads 1 --quiet && ls out/bare/*/*.laz'
 
 step "Python"

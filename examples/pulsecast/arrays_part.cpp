@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: MIT
 
 #include <string_view>
-#include <utility>
 
 #include <pulsecast/io/npz.hpp>
 #include <pulsecast/version.hpp>
@@ -14,26 +13,13 @@ using namespace pulsecast;
 
 namespace {
 
-template <class Writer>
-class Arrays final : public PointFile {
- public:
-  template <class Settings>
-  Arrays(const fs::path& path, Settings&& settings) : writer_(path, std::forward<Settings>(settings)) {}
-  void operator()(const EchoBatch& batch) override { writer_(batch); }
-  void close() override { writer_.close(); }
-  void count(LeftOut& /*sum*/) const override {}
-
- private:
-  Writer writer_;
-};
-
 std::unique_ptr<PointFile> point_arrays(const fs::path& path, const io::PointLayout& layout,
                                         const io::PointSettings& points) {
-  return std::make_unique<Arrays<io::NpzWriter>>(path, io::NpzSettings{.layout = layout, .points = points});
+  return std::make_unique<WrittenFile<io::NpzWriter>>(path, io::NpzSettings{.layout = layout, .points = points});
 }
 
 std::unique_ptr<PointFile> waveform_arrays(const fs::path& path, double start_time) {
-  return std::make_unique<Arrays<io::WaveformNpzWriter>>(path, start_time);
+  return std::make_unique<WrittenFile<io::WaveformNpzWriter>>(path, start_time);
 }
 
 }  // namespace

@@ -26,6 +26,10 @@ namespace {
 
 RawScene scene_of(const ImportRequest& request) {
   const std::filesystem::path path = request.path;
+  if (request.version != PULSECAST_VERSION)
+    throw FileError(request.path, "",
+                    "is asked for by version " + request.version +
+                        " of pulsecast: expected " PULSECAST_VERSION ", that of this pulsecast-import");
 #if defined(PULSECAST_CITYGML)
   const io::CityGmlSettings of_city;
   if (request.city) return io::detail::CityGmlImport(path, of_city).read();

@@ -35,6 +35,8 @@
 
 #include "../summary.hpp"
 #include "accuracy.hpp"
+#include "clock.hpp"
+#include "doctor.hpp"
 #include "entry.hpp"
 #include "error_report.hpp"
 #include "forecast_report.hpp"
@@ -69,35 +71,6 @@ std::atomic<bool> follows = false;  // another process decides when to stop
 /// Completes results before the end; exits at once if there are none, or at the second signal.
 extern "C" void on_signal(int) {
   if (!follows && (signals.fetch_add(1) > 0 || !simulating)) _exit(interrupted);
-}
-
-/// Second of the GPS week for a time in UTC, in seconds since 1970. Source: IS-GPS-200; leap seconds: IERS Bulletin C.
-double gps_week_seconds(std::int64_t unix_time) {
-  static constexpr std::int64_t leaps[] = {362793600, 394329600,  425865600,  489024000,  567993600,  631152000,
-                                           662688000, 709948800,  741484800,  773020800,  820454400,  867715200,
-                                           915148800, 1136073600, 1230768000, 1341100800, 1435708800, 1483228800};
-  constexpr std::int64_t epoch = 315964800, week = 604800;
-  std::int64_t gps = unix_time - epoch;
-  for (const std::int64_t leap : leaps) gps += unix_time >= leap ? 1 : 0;
-  return static_cast<double>(((gps % week) + week) % week);
-}
-
-/// Parses a time given by a user.
-std::int64_t unix_time_of(const std::string& text) {
-  if (text.empty()) return std::time(nullptr);
-  std::tm t{};
-  std::istringstream in(text);
-  if (text.find_first_not_of("0123456789") == std::string::npos && text.size() < 16)
-    return *pulsecast::text::number_in<std::int64_t>(text);
-  in >> std::get_time(&t, "%Y-%m-%d %H:%M:%S");
-  const std::tm given = t;
-  const std::int64_t moment = timegm(&t);  // it turns the 30th of February into the 2nd of March
-  const bool is_date =
-      t.tm_mday == given.tm_mday && t.tm_hour == given.tm_hour && t.tm_sec == given.tm_sec && moment >= 0;
-  if (!in || in.peek() != std::istringstream::traits_type::eof() || !is_date)
-    throw std::invalid_argument("--gpsStartTime '" + text +
-                                "': expected YYYY-MM-DD hh:mm:ss in UTC, or whole seconds since 1970");
-  return moment;
 }
 
 Loading loading_of(const Options& o, const SurveyFile& file, std::uint64_t seed) {
@@ -165,12 +138,12 @@ class Session {
     const RunSummary all = play_all(simulation, *inputs, parent, again);
     pages_.finish(all.complete);
     if (all.complete && all.echoes == 0 && all.pulses() > 0) explain_no_points(*simulation);
-    note_left_out();
+    notes_.note(left_out_.notes(options_.las_1_0));
     if (all.complete && all.echoes > 0 && !empty_legs_.empty())
       notes_.warn("no points from leg " + empty_legs_ +
                   ": a leg without pulses, as the last of a platform that moves, may be inactive");
     if (all.count(Fate::blocked) > all.slots / 20 * 19)
-      notes_.note("more than 95 % of the pulses are blocked by the field of view: are its angles in degrees?");
+      notes_.note("more than 95 % of the slots are outside the field of view: are its angles in degrees?");
     const std::string traffic = ranks_.traffic();
     if (!options_.quiet) print_summary(all, traffic);
     notes_.require_none();
@@ -196,34 +169,6 @@ class Session {
     return {.is_complete = !newest.empty()};
   }
 
-  /// Notes what the files do not hold of the results.
-  void note_left_out() {
-    const auto number = [](std::uint64_t count) { return std::to_string(count); };
-    if (left_out_.pulses_cut > 0)
-      notes_.note(
-          number(left_out_.pulses_cut) + " pulses have more than " + (options_.las_1_0 ? "5" : "15") +
-          " returns, the greatest number in LAS, which later ones have, too: maxNOR of the scanner limits them");
-    if (left_out_.classes_cut > 0)
-      notes_.note(number(left_out_.classes_cut) + " points have a class above " + (options_.las_1_0 ? "31" : "255") +
-                  ", the greatest in LAS, which they have, too: --columns classification keeps theirs");
-    if (left_out_.echoes > 0)
-      notes_.note(number(left_out_.echoes) +
-                  " points have no place in PTX, which has the first return of a pulse in "
-                  "the grid: --format npz or laz has all");
-    if (left_out_.waveforms_cut > 0)
-      notes_.note(number(left_out_.waveforms_cut) + " waveforms have more samples than --waveformBins, up to " +
-                  number(left_out_.samples_max) + ": the rest is left out");
-    std::string classes;
-    std::uint64_t points = 0;
-    for (const auto& [of, count] : left_out_.unlabelled) {
-      classes += (classes.empty() ? "" : ", ") + std::to_string(of);
-      points += count;
-    }
-    if (points > 0)
-      notes_.note(number(points) + " points have label 0, as no label is known of their classes (" + classes +
-                  "): --kittiClasses gives labels");
-  }
-
   [[nodiscard]] std::unique_ptr<Simulation> loaded(const std::shared_ptr<SurveyInputs>& inputs) {
     Loading loading = loading_of(options_, file_, log_.seed);
     loading.inputs = inputs;
@@ -246,38 +191,9 @@ class Session {
     if (again && !clock && !options_.gps_start_time.empty())
       require_same(*again, second_of_week(log_.start_time), second_of_week(asked));
     if (!again && clock) log_.start_time = *clock;
-    settle_clock(simulation);
-  }
-
-  /// Clock of LAS files: that of a GPS week, unless a trajectory begins beyond one. Source: LAS 1.4 R15, Global
-  /// Encoding, GPS Time Type.
-  void settle_clock(const Simulation& simulation) {
-    constexpr double week = 604'800;
-    const double begin = log_.start_time,
-                 end = begin + simulation.repetitions() * simulation.compiled().source.duration().seconds();
-    options_.adjusted_time = simulation.compiled().clock_start && !(begin >= 0 && begin <= week);
-    if (options_.format == "mcap" && !(begin >= 0 && end <= 2'147'483'647))
-      throw std::invalid_argument("--format mcap: times from " + text::to_text(begin) + " to " + text::to_text(end) +
-                                  " s: expected seconds from 0 to 2^31 - 1, as ROS has; other formats have any");
-    if (!options_.format.starts_with("las") && !options_.format.ends_with("laz")) return;
-    std::ostringstream text;
-    text << std::fixed << "times from " << begin << " to " << end << " s ";
-    if (options_.adjusted_time && std::fabs(begin) <= 1e9) {  // up to 2043
-      using namespace std::chrono;
-      const year_month_day day = floor<days>(sys_days{January / 6 / 1980} + seconds(std::llround(1e9 + begin)));
-      text << "are no seconds of a GPS week: LAS says that they are adjusted standard GPS time, which begins here at "
-           << int{day.year()} << '-' << std::setfill('0') << std::setw(2) << unsigned{day.month()} << '-'
-           << std::setw(2) << unsigned{day.day()};
-      notes_.note(text.str());
-    } else if (options_.adjusted_time) {
-      text << "are neither seconds of a GPS week nor adjusted standard GPS time, of which LAS says that they are: "
-              "expected one of these "
-              "clocks";
-      notes_.warn(text.str());
-    } else if (end > week) {
-      text << "continue beyond the end of the GPS week, 604800 s";
-      notes_.note(text.str());
-    }
+    settle_clock(options_, simulation, log_.start_time,
+                 log_.start_time + simulation.repetitions() * simulation.compiled().source.duration().seconds(),
+                 notes_);
   }
 
   /// Removes the log of the previous repetition, a possible remnant of an interrupted run.
@@ -329,7 +245,6 @@ class Session {
         std::cout << "  " << std::left << std::setw(13) << name << std::right << std::setw(12) << all.count(f) << unit;
     };
     fate("with echoes", Fate::returned, " pulses\n");
-    fate("blocked", Fate::blocked, " pulse slots, when the optic is closed\n");
     for (const std::string& written : folders_) std::cout << "  " << written << '\n';
   }
 
@@ -554,7 +469,7 @@ void print_info(const Options& options, const SurveyFile& file, std::uint64_t se
               << b.z << " m\n";
   }
   if (simulation.repetitions() > 1) std::cout << "runs     " << simulation.repetitions() << '\n';
-  std::cout << "\n  files       starts [s]   lasts [s]   rate [kHz]        pulses\n";
+  std::cout << "\n  files       starts [s]   lasts [s]   rate [kHz]         slots\n";
   for (const auto& leg : compiled.legs) {
     const std::string name = leg.active ? prefix_of(leg) : "(inactive)";
     std::cout << "  " << std::left << std::setw(10) << name << std::right << std::setw(12) << leg.start.seconds()
@@ -580,12 +495,10 @@ void preview(const Options& options, const SurveyFile& file, std::uint64_t seed,
   const PulseIndex slots = simulation.compiled().source.size();
   PulseIndex stride = std::max<PulseIndex>(1, slots / enough);
   if (stride > 1) stride |= 1;  // odd, to be out of step with the channels
-  Picture picture(path);
-  for_each_raster(file.survey,
-                  [&](const Raster& raster, const Placement& placement) { picture.add_ground(raster, placement); });
-  const RunSummary summary =
-      pulsecast::run(simulation.survey(), {.threads = options.threads, .stride = stride}, picture);
-  picture.close();
+  const std::unique_ptr<PointFile> picture = picture_file(path, file.survey);
+  const RunSummary summary = pulsecast::run(simulation.survey(), {.threads = options.threads, .stride = stride},
+                                            [&](const EchoBatch& batch) { (*picture)(batch); });
+  picture->close();
   if (!options.quiet)
     std::cout << "1 pulse in " << stride << " of " << slots << ", " << summary.echoes << " points: " << path.string()
               << '\n';
@@ -593,8 +506,7 @@ void preview(const Options& options, const SurveyFile& file, std::uint64_t seed,
 
 /// Options of a run, with what the survey adds to them.
 Options settled_by(const SurveyFile& file, Options options, Notes& notes) {
-  const bool has_reference = options.geojson || options.format == "las" || options.format.ends_with("laz");
-  options.reference = has_reference ? reference_system_of(options, file.survey.scene, notes) : io::SpatialReference{};
+  options.reference = reference_system_of(options, file.survey.scene, notes);
   options.light_paths = options.light_paths || file.survey.scene.follows_light();
   return options;
 }
@@ -605,6 +517,10 @@ int work(const Options& options, Ranks& ranks) {
   notes.note(options.notes);
   if (options.command == "catalogue") {
     print_catalogue(options);
+    return success;
+  }
+  if (options.command == "doctor") {
+    print_abilities(options);
     return success;
   }
   const SurveyFile file = read_survey_file(options, notes);

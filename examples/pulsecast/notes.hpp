@@ -15,6 +15,8 @@
 class Notes {
  public:
   explicit Notes(const Options& options) : quiet_(options.quiet), strict_(options.strict) {}
+  /// Appends them to `kept`, and prints none.
+  explicit Notes(std::vector<std::string>& kept) : kept_(&kept) {}
 
   /// Prints a warning about the survey or its files: an error with `--strict`.
   void warn(const std::string& text) {
@@ -30,7 +32,11 @@ class Notes {
 
   /// Prints any other note.
   void note(const std::string& text) {
-    if (!quiet_ && printed_.insert(text).second) std::cerr << "note: " << text << '\n';
+    if (quiet_ || !printed_.insert(text).second) return;
+    if (kept_ != nullptr)
+      kept_->push_back(text);
+    else
+      std::cerr << "note: " << text << '\n';
   }
   void note(const std::vector<std::string>& texts) {
     for (const std::string& text : texts) note(text);
@@ -43,7 +49,8 @@ class Notes {
   }
 
  private:
-  bool quiet_, strict_;
+  bool quiet_ = false, strict_ = false;
+  std::vector<std::string>* kept_ = nullptr;
   std::size_t errors_ = 0;
   std::set<std::string> printed_;
 };

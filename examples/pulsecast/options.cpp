@@ -9,6 +9,7 @@
 #include <iostream>
 #include <iterator>
 #include <span>
+#include <stdexcept>
 #include <string>
 #include <system_error>
 #include <utility>
@@ -32,7 +33,7 @@ namespace {
 namespace fs = std::filesystem;
 namespace text = pulsecast::text;
 
-constexpr const char* all_commands[] = {"run", "check", "info", "preview", "forecast", "catalogue"};
+constexpr const char* all_commands[] = {"run", "check", "info", "preview", "forecast", "catalogue", "doctor"};
 
 /// "; did you mean '--format'?"
 std::string nearest_option(const CLI::App& app, const std::string& given) {
@@ -118,6 +119,11 @@ constexpr Unused unused_options[] = {{"parallelization", true, "work is always s
                                      {"logFile", false, "the log goes to standard error"},
                                      {"logFileOnly", false, "the log goes to standard error"}};
 
+/// Options that say what is in files, which the Python module takes, too.
+constexpr const char* names_of_file_options[] = {"format",       "scanRate", "kittiClasses", "gpsStartTime", "lasScale",
+                                                 "las10",        "epsg",     "wkt",          "missesAt",     "colours",
+                                                 "nearInfrared", "columns",  "uncertainty",  "pagePoints"};
+
 /// Names of the columns that points can have, in order.
 std::string names_of_columns() {
   std::string all;
@@ -164,6 +170,33 @@ class CommandLine {
     std::cerr << "error: " << problem << "\nTry --help.\n";
     status = 2;
     return std::nullopt;
+  }
+
+  [[nodiscard]] std::vector<std::pair<std::string, std::string>> file_options() const {
+    std::vector<std::pair<std::string, std::string>> all;
+    for (const char* name : names_of_file_options) {
+      const CLI::Option& option = *app_.get_option("--" + std::string(name));
+      all.emplace_back(option.get_lnames().back(), option.get_description());
+    }
+    return all;
+  }
+
+  /// Reads words that are options of files alone, each with its value. Throws std::invalid_argument.
+  [[nodiscard]] Options read_file_options(const std::vector<std::string>& words) {
+    std::vector<std::string> names;
+    for (const auto& [name, help] : file_options()) names.push_back("--" + name);
+    for (const std::string& word : words)
+      if (const std::string name = word.substr(0, word.find('=')); std::ranges::find(names, name) == names.end())
+        throw std::invalid_argument(name + " is no option of files" + text::suggestion(name, names));
+    std::string problem;
+    try {
+      app_.parse(std::vector<std::string>(words.rbegin(), words.rend()));
+    } catch (const CLI::ParseError& error) {
+      problem = error.what();
+    }
+    if (problem.empty()) problem = settle();
+    if (!problem.empty()) throw std::invalid_argument(problem);
+    return o_;
   }
 
  private:
@@ -360,13 +393,13 @@ class CommandLine {
     for (const std::string& extra : extras)
       if (extra.starts_with('-')) return "unknown option " + extra + nearest_option(app_, extra);
     const std::vector<std::string> commands(std::begin(all_commands), std::end(all_commands));
-    const bool is_catalogue = o_.command == "catalogue";
+    const bool without_document = o_.command == "catalogue" || o_.command == "doctor";
     if (!extras.empty() && o_.survey.extension() != ".xml")
       return "unknown command '" + o_.survey.string() + "'" + text::suggestion(o_.survey.string(), commands);
-    if (is_catalogue && !o_.survey.empty())
-      return "unexpected argument '" + o_.survey.string() + "': catalogue takes no document";
+    if (without_document && !o_.survey.empty())
+      return "unexpected argument '" + o_.survey.string() + "': " + o_.command + " takes no document";
     if (!extras.empty()) return "unexpected argument '" + extras.front() + "': expected one document";
-    if (!is_catalogue && o_.survey.empty()) return "no document is given: expected SURVEY.xml";
+    if (!without_document && o_.survey.empty()) return "no document is given: expected SURVEY.xml";
     return "";
   }
 
@@ -478,7 +511,8 @@ class CommandLine {
       "  pulsecast preview SURVEY.xml    draws a preview of its points\n"
       "  pulsecast forecast SURVEY.xml   predicts time, memory and errors, and finds the cheapest settings within "
       "limits\n"
-      "  pulsecast catalogue             lists the scanners and platforms of the catalogue\n",
+      "  pulsecast catalogue             lists the scanners and platforms of the catalogue\n"
+      "  pulsecast doctor                tells what this installation can do, and what it lacks\n",
       "pulsecast"};
   Options o_;
   std::string seed_, epsg_, project_, misses_at_, scan_rate_, waveform_bins_, time_, memory_, apply_to_, swallowed_;
@@ -488,6 +522,10 @@ class CommandLine {
 };
 
 }  // namespace
+
+Options options_of_files(const std::vector<std::string>& words) { return CommandLine().read_file_options(words); }
+
+std::vector<std::pair<std::string, std::string>> file_options() { return CommandLine().file_options(); }
 
 std::optional<Options> read_command_line(int argc, char** argv, int& status) {
   CommandLine line;

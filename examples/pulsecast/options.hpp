@@ -9,6 +9,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <pulsecast/accuracy.hpp>
@@ -34,7 +35,7 @@ struct ForecastLimits {
 
 /// Options of the command line.
 struct Options {
-  std::string command = "run";  ///< run, check, info, preview, forecast or catalogue
+  std::string command = "run";  ///< run, check, info, preview, forecast, catalogue or doctor
   std::filesystem::path survey{};
   std::vector<std::filesystem::path> assets{};  ///< those given, then those of the program
   std::filesystem::path output = "output";
@@ -87,6 +88,12 @@ struct Options {
            });
   }
 };
+
+/// Options that say what is in files, by words as of a command line, `--las-scale=0.001`. Throws std::invalid_argument
+/// for a problem, and for the name of any other option.
+Options options_of_files(const std::vector<std::string>& words);
+/// Names of these options, each with its help.
+std::vector<std::pair<std::string, std::string>> file_options();
 
 /// Reads a command line. Empty if nothing remains to be done; then `status` is set.
 std::optional<Options> read_command_line(int argc, char** argv, int& status);

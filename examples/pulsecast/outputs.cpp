@@ -18,6 +18,7 @@
 #include <pulsecast/io/trajectory.hpp>
 #include <pulsecast/shape/hillshade.hpp>
 
+#include "loading.hpp"
 #include "parts.hpp"
 #include "point_formats.hpp"
 
@@ -90,14 +91,15 @@ void take_columns(Options& o, const helios::SurveySettings& survey, const helios
   for (std::size_t k = 0; k < compiled.legs.size(); ++k) {
     const helios::CompiledSurvey::Leg& leg = compiled.legs[k];
     if (!leg.active) continue;
-    for (const std::string& prefix : {prefix_of(leg), std::string("leg")})  // of one file, and of a sample of all
+    for (const std::string& prefix : {prefix_of(leg), whole_run}) {
       legs[prefix].emplace_back(leg.start, &compiled.source.legs()[k]);
-    if (o.format == "ptx" && leg.end > leg.first) o.ptx_scans[prefix_of(leg)].push_back(ptx_scan(survey, compiled, k));
-    if (o.format == "ptx") o.ptx_scans[prefix_of(leg)];
+      if (o.format == "ptx" && leg.end > leg.first) o.ptx_scans[prefix].push_back(ptx_scan(survey, compiled, k));
+      if (o.format == "ptx") o.ptx_scans[prefix];
+    }
   }
   if (!legs.empty()) {
     constexpr double step = 1000;  // [m]: at such distances, single precision errs by less than 0.1 mm
-    const Vec3 at = legs["leg"].front().second->instrument_at({}).position;
+    const Vec3 at = legs[whole_run].front().second->instrument_at({}).position;
     for (int axis = 0; axis < 3; ++axis) o.origin[axis] = std::nearbyint(at[axis] / step) * step + 0.0;
   }
   o.sensors.clear();
@@ -204,7 +206,7 @@ struct LegFiles::Inside {
   std::optional<io::PulseTextWriter> pulses{};
   std::optional<io::MissTextWriter> misses{};
   std::optional<io::MissPoints> miss_points{};
-  std::optional<io::GeoJsonWriter> map{};
+  std::unique_ptr<PointFile> map{};
   std::vector<Shot> shots{};
 };
 
@@ -212,8 +214,11 @@ LegFiles::LegFiles(const fs::path& folder, const std::string& prefix, const Opti
                    const std::vector<std::string>& channels)
     : inside_(new Inside{.trajectory =
                              io::TrajectoryWriter(folder / (prefix + "_trajectory.txt"), {.start_time = start_time})}) {
-  for (const fs::path& path : point_files(folder, prefix, o, channels))
+  for (const fs::path& path : point_files(folder, prefix, o, channels)) {
+    std::error_code error;
+    if (o.format == "kitti") fs::remove_all(path, error);  // the folder that a run before left
     inside_->points.push_back(point_file(path, prefix, o, start_time));
+  }
   if (o.write_waveform && !point_format(o.format).waveform_arrays)
     inside_->waveforms.emplace(folder / (prefix + waveform_ending(o)),
                                io::TextFileSettings{start_time, o.waveform_bins});
@@ -222,11 +227,7 @@ LegFiles::LegFiles(const fs::path& folder, const std::string& prefix, const Opti
   if (o.write_pulse) inside_->pulses.emplace(folder / (prefix + "_pulse.txt"), io::TextFileSettings{start_time});
   if (o.write_misses) inside_->misses.emplace(folder / (prefix + "_misses.txt"), io::TextFileSettings{start_time});
   if (o.misses_at) inside_->miss_points.emplace(io::MissSettings{.range = *o.misses_at});
-  if (o.geojson) {
-    const io::SpatialReference in = o.reference.value_or(io::SpatialReference{});
-    inside_->map.emplace(folder / (prefix + "_map.geojson"),
-                         io::GeoJsonSettings{.epsg = in.epsg, .unit = in.unit, .vertical_unit = in.vertical_unit});
-  }
+  if (o.geojson) inside_->map = map_file(folder / (prefix + "_map.geojson"), o);
 }
 LegFiles::~LegFiles() = default;
 
@@ -275,13 +276,25 @@ LeftOut LegFiles::left_out() const {
   return sum;
 }
 
-struct Picture::Inside {
-  io::ImageWriter writer;
-};
-Picture::Picture(const fs::path& path) : inside_(new Inside{io::ImageWriter(path)}) {}
-Picture::~Picture() = default;
-void Picture::operator()(const EchoBatch& batch) { inside_->writer(batch); }
-void Picture::add_ground(const Raster& raster, const Placement& placement) {
-  inside_->writer.add_ground(raster, hillshade(raster), placement);
+std::unique_ptr<PointFile> map_file(const fs::path& path, const Options& o) {
+  const io::SpatialReference in = o.reference.value_or(io::SpatialReference{});
+  return std::make_unique<WrittenFile<io::GeoJsonWriter>>(
+      path, io::GeoJsonSettings{.epsg = in.epsg, .unit = in.unit, .vertical_unit = in.vertical_unit});
 }
-void Picture::close() { inside_->writer.close(); }
+
+namespace {
+
+class Picture final : public WrittenFile<io::ImageWriter> {
+ public:
+  Picture(const fs::path& path, const helios::SurveySettings& survey) : WrittenFile(path, io::ImageSettings{.frame_on = io::FrameOn::standing}) {
+    for_each_raster(survey, [this](const Raster& raster, const Placement& placement) {
+      writer_.add_ground(raster, hillshade(raster), placement);
+    });
+  }
+};
+
+}  // namespace
+
+std::unique_ptr<PointFile> picture_file(const fs::path& path, const helios::SurveySettings& survey) {
+  return std::make_unique<Picture>(path, survey);
+}

@@ -12,8 +12,6 @@
 #include <pulsecast/helios/survey.hpp>
 #include <pulsecast/io/las.hpp>
 #include <pulsecast/io/text_files.hpp>
-#include <pulsecast/scene/part.hpp>
-#include <pulsecast/shape/raster.hpp>
 
 #include "options.hpp"
 #include "point_files.hpp"
@@ -25,6 +23,9 @@ void take_columns(Options& options, const pulsecast::helios::SurveySettings& sur
 
 /// Ids of the channels that have point files of their own; empty for one file.
 std::vector<std::string> file_channels(const Options& options, const pulsecast::helios::SurveySettings& survey);
+
+/// Prefix of what is of all legs.
+inline const std::string whole_run = "leg";
 
 /// Prefix of the files of a leg, such as `leg000`, or of its strip.
 std::string prefix_of(const pulsecast::helios::CompiledSurvey::Leg& leg);
@@ -67,20 +68,9 @@ class LegFiles {
   std::unique_ptr<Inside> inside_;
 };
 
-/// Sink for a picture.
-class Picture {
- public:
-  explicit Picture(const std::filesystem::path& path);
-  ~Picture();
-  Picture(const Picture&) = delete;
-  Picture& operator=(const Picture&) = delete;
-  void operator()(const pulsecast::EchoBatch& batch);
-  [[nodiscard]] static bool reads_empty_shots() noexcept { return false; }  ///< as the concept ChoosesShots describes
-  /// Draws the hillshade of a raster behind the points.
-  void add_ground(const pulsecast::Raster& raster, const pulsecast::Placement& placement);
-  void close();
+/// File of trajectories and footprints.
+std::unique_ptr<PointFile> map_file(const std::filesystem::path& path, const Options& options);
 
- private:
-  struct Inside;
-  std::unique_ptr<Inside> inside_;
-};
+/// Picture of the points, in front of the hillshade of the scene's rasters.
+std::unique_ptr<PointFile> picture_file(const std::filesystem::path& path,
+                                        const pulsecast::helios::SurveySettings& survey);

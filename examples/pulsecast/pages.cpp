@@ -4,7 +4,6 @@
 #include "pages.hpp"
 
 #include <algorithm>
-#include <optional>
 
 #include <pulsecast/page/page.hpp>
 
@@ -12,34 +11,17 @@
 
 using namespace pulsecast;
 
-struct Pages::Inside {
-  page::PageSettings settings{};
-  bool file = false;
-  page::PageSurvey survey{};
-  std::optional<page::PageWriter> writer{};
-  std::unique_ptr<LivePage> server{};
-};
+namespace {
 
-Pages::Pages(const Options& options, const helios::SurveySettings& survey) : inside_(new Inside) {
+page::PageSurvey described(const helios::SurveySettings& survey) {
   const auto name = [](const std::string& full, const std::string& id) { return full.empty() ? id : full; };
-  inside_->settings.points_max = options.page_points;
-  inside_->file = options.page;
-  inside_->survey = {.name = survey.name,
-                     .scanner = name(survey.scanner.name, survey.scanner.id),
-                     .platform = name(survey.platform.name, survey.platform.id)};
-  if (options.live) inside_->server = part<LivePart>().page(inside_->survey, inside_->settings);
+  return {.name = survey.name,
+          .scanner = name(survey.scanner.name, survey.scanner.id),
+          .platform = name(survey.platform.name, survey.platform.id)};
 }
-Pages::~Pages() = default;
 
-std::string Pages::address() const { return inside_->server ? inside_->server->address() : ""; }
-
-void Pages::begin(const std::filesystem::path& folder, const helios::CompiledSurvey& compiled, const Options& options) {
-  if (!inside_->file && !inside_->server) return;
-  inside_->settings.columns = options.fields;
-  inside_->settings.points = options.points;
-  if (!options.colours && !io::PointLayout::packed(options.fields).needs(io::PointNeed::colour))
-    inside_->settings.points.colours = {};  // a page has colours if these have
-  page::PageSurvey survey = inside_->survey;
+page::PageSurvey described(const helios::SurveySettings& settings, const helios::CompiledSurvey& compiled) {
+  page::PageSurvey survey = described(settings);
   const int moments = std::clamp(static_cast<int>(40'000 / std::max<std::size_t>(compiled.legs.size(), 1)), 2, 1000);
   for (std::size_t k = 0; k < compiled.legs.size(); ++k) {
     const helios::CompiledSurvey::Leg& leg = compiled.legs[k];
@@ -47,8 +29,41 @@ void Pages::begin(const std::filesystem::path& folder, const helios::CompiledSur
         leg.strip ? "strip " + *leg.strip + ", leg " + std::to_string(leg.number) : "leg " + std::to_string(leg.number);
     survey.legs.push_back(page::page_leg(name, compiled.source.legs()[k].path(), leg.start, leg.duration, moments));
   }
-  if (inside_->file) inside_->writer.emplace(folder / "page.html", survey, inside_->settings);
-  if (inside_->server) inside_->server->begin(std::move(survey), inside_->settings);
+  return survey;
+}
+
+page::PageSettings page_settings(const Options& options) {
+  page::PageSettings settings{.points_max = options.page_points, .columns = options.fields, .points = options.points};
+  if (!options.colours && !io::PointLayout::packed(options.fields).needs(io::PointNeed::colour))
+    settings.points.colours = {};  // a page has colours if these have
+  return settings;
+}
+
+}  // namespace
+
+std::unique_ptr<PointFile> page_file(const std::filesystem::path& path, const helios::SurveySettings& survey,
+                                     const helios::CompiledSurvey& compiled, const Options& options) {
+  return std::make_unique<WrittenFile<page::PageWriter>>(path, described(survey, compiled), page_settings(options));
+}
+
+struct Pages::Inside {
+  bool file = false;
+  helios::SurveySettings survey{};
+  std::unique_ptr<PointFile> writer{};
+  std::unique_ptr<LivePage> server{};
+};
+
+Pages::Pages(const Options& options, const helios::SurveySettings& survey)
+    : inside_(new Inside{.file = options.page, .survey = survey}) {
+  if (options.live) inside_->server = part<LivePart>().page(described(survey), {.points_max = options.page_points});
+}
+Pages::~Pages() = default;
+
+std::string Pages::address() const { return inside_->server ? inside_->server->address() : ""; }
+
+void Pages::begin(const std::filesystem::path& folder, const helios::CompiledSurvey& compiled, const Options& options) {
+  if (inside_->file) inside_->writer = page_file(folder / "page.html", inside_->survey, compiled, options);
+  if (inside_->server) inside_->server->begin(described(inside_->survey, compiled), page_settings(options));
 }
 
 void Pages::operator()(const EchoBatch& batch) {

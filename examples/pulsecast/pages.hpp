@@ -10,6 +10,11 @@
 #include <pulsecast/run.hpp>
 
 #include "options.hpp"
+#include "point_files.hpp"
+
+/// Page of the points of a run.
+std::unique_ptr<PointFile> page_file(const std::filesystem::path& path, const pulsecast::helios::SurveySettings& survey,
+                                     const pulsecast::helios::CompiledSurvey& compiled, const Options& options);
 
 /// Page file and live page of a run, if requested.
 class Pages {

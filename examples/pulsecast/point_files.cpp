@@ -44,6 +44,35 @@ void LeftOut::add(const LeftOut& other) {
   for (const auto& [number, points] : other.unlabelled) unlabelled[number] += points;
 }
 
+std::vector<std::string> LeftOut::notes(bool las_1_0) const {
+  const auto number = [](std::uint64_t count) { return std::to_string(count); };
+  std::vector<std::string> all;
+  if (pulses_cut > 0)
+    all.push_back(
+        number(pulses_cut) + " pulses have more than " + (las_1_0 ? "5" : "15") +
+        " returns, the greatest number in LAS, which later ones have, too: maxNOR of the scanner limits them");
+  if (classes_cut > 0)
+    all.push_back(number(classes_cut) + " points have a class above " + (las_1_0 ? "31" : "255") +
+                  ", the greatest in LAS, which they have, too: --columns classification keeps theirs");
+  if (echoes > 0)
+    all.push_back(number(echoes) +
+                  " points have no place in PTX, which has the first return of a pulse in the grid: --format npz or "
+                  "laz has all");
+  if (waveforms_cut > 0)
+    all.push_back(number(waveforms_cut) + " waveforms have more samples than --waveformBins, up to " +
+                  number(samples_max) + ": the rest is left out");
+  std::string classes;
+  std::uint64_t points = 0;
+  for (const auto& [of, count] : unlabelled) {
+    classes += (classes.empty() ? "" : ", ") + std::to_string(of);
+    points += count;
+  }
+  if (points > 0)
+    all.push_back(number(points) + " points have label 0, as no label is known of their classes (" + classes +
+                  "): --kittiClasses gives labels");
+  return all;
+}
+
 namespace {
 
 template <class Writer>
@@ -58,23 +87,16 @@ void count_left_out(const Writer& writer, LeftOut& sum) {
 void count_left_out(const io::KittiWriter& writer, LeftOut& sum) { sum.add({.unlabelled = writer.unlabelled()}); }
 void count_left_out(const io::PtxWriter& writer, LeftOut& sum) { sum.add({.echoes = writer.echoes_left_out()}); }
 
-/// Point file by a writer of the library.
 template <class Writer>
-class WrittenPoints final : public PointFile {
+class CountedFile final : public WrittenFile<Writer> {
  public:
-  template <class... Arguments>
-  explicit WrittenPoints(Arguments&&... arguments) : writer_(std::forward<Arguments>(arguments)...) {}
-  void operator()(const EchoBatch& batch) override { writer_(batch); }
-  void close() override { writer_.close(); }
-  void count(LeftOut& sum) const override { count_left_out(writer_, sum); }
-
- private:
-  Writer writer_;
+  using WrittenFile<Writer>::WrittenFile;
+  void count(LeftOut& sum) const override { count_left_out(this->writer_, sum); }
 };
 
 template <class Writer, class... Arguments>
 std::unique_ptr<PointFile> written(Arguments&&... arguments) {
-  return std::make_unique<WrittenPoints<Writer>>(std::forward<Arguments>(arguments)...);
+  return std::make_unique<CountedFile<Writer>>(std::forward<Arguments>(arguments)...);
 }
 
 /// Settings of points in the frame of the scanner, in scans.
@@ -117,10 +139,7 @@ class ScanMessages {
 };
 #endif
 
-/// Folder of a KITTI sequence in place of what a run before left.
-io::KittiSettings kitti_settings(const fs::path& path, const std::string& prefix, const Options& o, double start_time) {
-  std::error_code error;
-  fs::remove_all(path, error);
+io::KittiSettings kitti_settings(const std::string& prefix, const Options& o, double start_time) {
   io::KittiSettings settings{.scan_rate = o.scan_rate, .points = in_scans(o, prefix, start_time)};
   settings.points.distortion = io::MotionDistortion::removed;
   if (!o.kitti_classes.empty()) settings.classes = read_kitti_classes(o.kitti_classes);
@@ -134,7 +153,7 @@ std::unique_ptr<PointFile> point_file(const fs::path& path, const std::string& p
   if (o.format == "copc.laz") return written<io::CopcWriter>(path, las_settings(o, start_time), o.threads);
   if (o.format == "laz") return written<io::LazWriter>(path, las_settings(o, start_time), o.threads);
   if (o.format == "las") return written<io::LasWriter>(path, las_settings(o, start_time));
-  if (o.format == "kitti") return written<io::KittiWriter>(path, kitti_settings(path, prefix, o, start_time));
+  if (o.format == "kitti") return written<io::KittiWriter>(path, kitti_settings(prefix, o, start_time));
   if (o.format == "ptx") return written<io::PtxWriter>(path, o.ptx_scans.at(prefix));
   io::PointSettings points = o.points;
   points.start_time = start_time;

@@ -7,6 +7,8 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include <pulsecast/echo.hpp>
 #include <pulsecast/io/kitti.hpp>
@@ -23,6 +25,7 @@ struct LeftOut {
   std::map<std::uint16_t, std::uint64_t> unlabelled{};  ///< see `KittiWriter`
 
   void add(const LeftOut& other);
+  [[nodiscard]] std::vector<std::string> notes(bool las_1_0) const;  ///< each a sentence
 };
 
 /// File of points in the format of the options; for KITTI a folder.
@@ -31,7 +34,20 @@ class PointFile {
   virtual ~PointFile() = default;
   virtual void operator()(const pulsecast::EchoBatch& batch) = 0;
   virtual void close() = 0;
-  virtual void count(LeftOut& sum) const = 0;  ///< adds what it does not hold
+  virtual void count(LeftOut& /*sum*/) const {}  ///< adds what it does not hold
+};
+
+/// File by a writer of the library.
+template <class Writer>
+class WrittenFile : public PointFile {
+ public:
+  template <class... Arguments>
+  explicit WrittenFile(Arguments&&... arguments) : writer_(std::forward<Arguments>(arguments)...) {}
+  void operator()(const pulsecast::EchoBatch& batch) override { writer_(batch); }
+  void close() override { writer_.close(); }
+
+ protected:
+  Writer writer_;
 };
 
 /// Opens a file of the points of a prefix, as `leg000`.

@@ -2,11 +2,16 @@
 // SPDX-License-Identifier: MIT
 #include "reference_systems.hpp"
 
+#include <optional>
 #include <string>
 #include <string_view>
+#include <variant>
 
 #include <pulsecast/base/text.hpp>
+#include <pulsecast/io/ascii_grid.hpp>
+#include <pulsecast/io/geotiff.hpp>
 #include <pulsecast/io/input_file.hpp>
+#include <pulsecast/io/png_heights.hpp>
 #if defined(PULSECAST_REFERENCE)
 #include "parts.hpp"
 #else
@@ -14,6 +19,9 @@
 #include <pulsecast/io/detail/reference_reader.hpp>
 #endif
 
+#include "point_formats.hpp"
+
+namespace fs = std::filesystem;
 using namespace pulsecast;
 
 namespace {
@@ -37,7 +45,44 @@ std::string text_of(const std::filesystem::path& path) {
   return text;
 }
 
+io::SpatialReference reference_of_rasters(const helios::SceneSettings& scene) {
+  std::optional<io::SpatialReference> shared;
+  for (const helios::PartSettings& part : scene.parts) {
+    const auto* const rasters = std::get_if<helios::GeoTiffSource>(&part.source);
+    if (rasters == nullptr || part.transform != helios::TransformSettings{}) continue;
+    for (const fs::path& path : rasters->files) {
+      const bool names_one = !io::is_ascii_grid(path) && !io::is_png(path);
+      const io::SpatialReference one = names_one ? io::read_geotiff_reference(path) : io::SpatialReference{};
+      if (shared.value_or(one) != one) return {};
+      shared = one;
+    }
+  }
+  const auto is_code = [](std::uint16_t code) { return code >= 1024 && code <= 32766; };  // source: OGC GeoTIFF 1.1
+  if (!shared || !is_code(shared->epsg)) return {};
+  if (!is_code(shared->vertical_epsg)) shared->vertical_epsg = 0;
+  return *shared;
+}
+
 }  // namespace
+
+io::SpatialReference reference_system_of(const Options& options, const helios::SceneSettings& scene, Notes& notes) {
+  if (!options.geojson && point_format(options.format).kind != PointKind::las) return {};
+  io::SpatialReference found = options.reference.value_or(io::SpatialReference{});
+  const bool is_given = options.reference || !options.wkt.empty();
+  if (!is_given) found = reference_of_rasters(scene);
+  if (found == io::SpatialReference{} && options.wkt.empty()) return found;
+  try {
+    found = completed(found, options.wkt, notes);
+  } catch (const FileError& error) {
+    if (is_given) throw;
+    notes.warn("the scene's rasters: " + std::string(error.what()) + "; results name no reference system");
+    return {};
+  }
+  if (found.unit != 1 && found.vertical_epsg == 0 && found.vertical_unit == 1)
+    notes.note("x and y in LAS are in units of " + text::to_text(found.unit) +
+               " m, and heights in metres, as the reference system has none of heights: --epsg CODE+CODE names both");
+  return found;
+}
 
 #if defined(PULSECAST_REFERENCE)
 io::SpatialReference completed(const io::SpatialReference& given, const std::filesystem::path& wkt, Notes& /*notes*/) {

@@ -4,6 +4,7 @@
 
 #include <filesystem>
 
+#include <pulsecast/helios/settings.hpp>
 #include <pulsecast/io/spatial_reference.hpp>
 
 #include "notes.hpp"
@@ -13,6 +14,13 @@
 /// `FileError`.
 pulsecast::io::SpatialReference completed(const pulsecast::io::SpatialReference& given,
                                           const std::filesystem::path& wkt, Notes& notes);
+
+/// Reference system of the files of a run, complete; unknown for formats without one: that of the options, or that
+/// which all rasters of the scene share. Unknown if there is none, or different ones. Rasters moved by their part do
+/// not count. Throws a `FileError` for a system of the options that cannot be written; notes one of the rasters, and
+/// heights without a system.
+pulsecast::io::SpatialReference reference_system_of(const Options& options,
+                                                    const pulsecast::helios::SceneSettings& scene, Notes& notes);
 
 /// Projector of --project; empty without. Throws a `FileError` for systems that do not suit, and without PROJ.
 pulsecast::io::MapProjector projector_of(const Options& options);

@@ -17,12 +17,7 @@
 #include <pugixml.hpp>
 
 #include <pulsecast/helios/document.hpp>
-#include <pulsecast/io/ascii_grid.hpp>
-#include <pulsecast/io/geotiff.hpp>
 #include <pulsecast/io/output_file.hpp>
-#include <pulsecast/io/png_heights.hpp>
-
-#include "reference_systems.hpp"
 
 namespace fs = std::filesystem;
 using namespace pulsecast;
@@ -38,46 +33,6 @@ SurveyFile read_survey_file(const Options& options, Notes& notes) try {
 } catch (const helios::XmlFaults& faults) {
   notes.warn(faults.warnings());
   throw;
-}
-
-namespace {
-
-io::SpatialReference reference_of_rasters(const helios::SceneSettings& scene) {
-  std::optional<io::SpatialReference> shared;
-  for (const helios::PartSettings& part : scene.parts) {
-    const auto* const rasters = std::get_if<helios::GeoTiffSource>(&part.source);
-    if (rasters == nullptr || part.transform != helios::TransformSettings{}) continue;
-    for (const fs::path& path : rasters->files) {
-      const bool names_one = !io::is_ascii_grid(path) && !io::is_png(path);
-      const io::SpatialReference one = names_one ? io::read_geotiff_reference(path) : io::SpatialReference{};
-      if (shared.value_or(one) != one) return {};
-      shared = one;
-    }
-  }
-  const auto is_code = [](std::uint16_t code) { return code >= 1024 && code <= 32766; };  // source: OGC GeoTIFF 1.1
-  if (!shared || !is_code(shared->epsg)) return {};
-  if (!is_code(shared->vertical_epsg)) shared->vertical_epsg = 0;
-  return *shared;
-}
-
-}  // namespace
-
-io::SpatialReference reference_system_of(const Options& options, const helios::SceneSettings& scene, Notes& notes) {
-  io::SpatialReference found = options.reference.value_or(io::SpatialReference{});
-  const bool is_given = options.reference || !options.wkt.empty();
-  if (!is_given) found = reference_of_rasters(scene);
-  if (found == io::SpatialReference{} && options.wkt.empty()) return found;
-  try {
-    found = completed(found, options.wkt, notes);
-  } catch (const FileError& error) {
-    if (is_given) throw;
-    notes.warn("the scene's rasters: " + std::string(error.what()) + "; results name no reference system");
-    return {};
-  }
-  if (found.unit != 1 && found.vertical_epsg == 0 && found.vertical_unit == 1)
-    notes.note("x and y in LAS are in units of " + text::to_text(found.unit) +
-               " m, and heights in metres, as the reference system has none of heights: --epsg CODE+CODE names both");
-  return found;
 }
 
 namespace {
@@ -190,12 +145,12 @@ const char* kind_name(helios::PlatformKind kind) {
   return names[static_cast<std::size_t>(kind)];
 }
 
-std::vector<fs::path> documents_of(const Options& options) {
+std::vector<fs::path> documents_of(const std::vector<fs::path>& folders) {
   std::vector<fs::path> files;
   std::set<std::string> seen;
   std::error_code ignored;
   const fs::path here_now = fs::current_path(ignored);  // documents of surveys
-  for (const fs::path& folder : options.assets)
+  for (const fs::path& folder : folders)
     for (const fs::path& inside : {folder, folder / "data"}) {
       if (inside == here_now) continue;
       std::error_code error;
@@ -211,16 +166,19 @@ std::vector<fs::path> documents_of(const Options& options) {
 
 }  // namespace
 
-void print_catalogue(const Options& options) {
-  for (const fs::path& file : documents_of(options)) {
-    helios::AssetDocument assets;
-    try {
-      assets = helios::read_assets(file, {.assets = options.assets});
+std::vector<CatalogueDocument> read_catalogue(const Options& options, const std::vector<fs::path>& folders) {
+  std::vector<CatalogueDocument> all;
+  for (fs::path& file : documents_of(folders)) try {
+      helios::AssetDocument assets = helios::read_assets(file, {.assets = options.assets});
+      if (!assets.scanners.empty() || !assets.platforms.empty()) all.push_back({std::move(file), std::move(assets)});
     } catch (const FileError& error) {
       if (options.verbose) std::cerr << "note: " << error.what() << '\n';
-      continue;
     }
-    if (assets.scanners.empty() && assets.platforms.empty()) continue;
+  return all;
+}
+
+void print_catalogue(const Options& options) {
+  for (const auto& [file, assets] : read_catalogue(options, options.assets)) {
     std::cout << file.string() << '\n';
     for (const auto& s : assets.scanners) {
       std::cout << "  " << std::left << std::setw(36) << s.id << std::setw(13) << optic_name(s.channels.front().optic)

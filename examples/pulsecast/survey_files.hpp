@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include <pulsecast/helios/document.hpp>
 #include <pulsecast/helios/settings.hpp>
 
 #include "notes.hpp"
@@ -23,12 +24,6 @@ struct SurveyFile {
 /// Reads the survey of the command line. Notes its warnings, also if it throws.
 SurveyFile read_survey_file(const Options& options, Notes& notes);
 
-/// Reference system of a run, complete: that of the options, or that which all rasters of the scene share. Unknown if
-/// there is none, or different ones. Rasters moved by their part do not count. Throws a `FileError` for a system of the
-/// options that cannot be written; notes one of the rasters, and heights without a system.
-pulsecast::io::SpatialReference reference_system_of(const Options& options,
-                                                    const pulsecast::helios::SceneSettings& scene, Notes& notes);
-
 /// Changes by `write_survey_file`, to all channels.
 struct WaveformChange {
   int rings = 0;        ///< `beamSampleQuality`
@@ -39,6 +34,15 @@ struct WaveformChange {
 /// file mode. Throws a `FileError` and keeps the old file if the new text would give another survey.
 void write_survey_file(const Options& options, const SurveyFile& file, const WaveformChange& change,
                        const std::filesystem::path& path);
+
+/// Document with scanners or platforms.
+struct CatalogueDocument {
+  std::filesystem::path path;
+  pulsecast::helios::AssetDocument assets;
+};
+/// Those in folders and their `data/`. Documents with faults are left out; noted if `verbose`.
+std::vector<CatalogueDocument> read_catalogue(const Options& options,
+                                              const std::vector<std::filesystem::path>& folders);
 
 /// Prints the scanners and platforms in the program's assets.
 void print_catalogue(const Options& options);

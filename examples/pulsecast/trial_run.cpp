@@ -92,7 +92,7 @@ class TrialWriter {
     const TemporaryFolder folder;
     Written all;
     const double before = processor_time();
-    LegFiles files(folder.path, "leg", options_, start_time, channels_);
+    LegFiles files(folder.path, whole_run, options_, start_time, channels_);
     all.seconds = processor_time() - before;
     add(files, all);
     const double then = processor_time();
@@ -247,7 +247,7 @@ void WritingCost::scale_to(double all, double points, double lines) {
 
 PulseLines pulse_lines(const Options& options, const std::vector<std::string>& channels) {
   const TemporaryFolder folder;
-  if (!LegFiles(folder.path, "leg", options, start_time, channels).reads_empty_shots()) return PulseLines::none;
+  if (!LegFiles(folder.path, whole_run, options, start_time, channels).reads_empty_shots()) return PulseLines::none;
   return options.write_pulse ? PulseLines::all : PulseLines::empty;
 }
 

@@ -32,6 +32,7 @@
 #include <pulsecast/version.hpp>
 
 #include "../pulsecast/loading.hpp"
+#include "outputs.hpp"
 #include "settings.hpp"
 
 namespace py = pybind11;
@@ -96,8 +97,9 @@ void set_looks(const MeshLooks& looks, Simulation::Mesh& mesh) {
 
 /// Triangles of arrays, with one material.
 Simulation::Mesh mesh_of(const py::array_t<double, py::array::c_style | py::array::forcecast>& vertices,
-                         const py::object& triangles_given, ObjectId object, double reflectance,
-                         std::uint16_t classification, bool ground, const std::optional<python::NumberArray>& texture,
+                         const py::object& triangles_given, python::Whole<"Mesh::object", ObjectId> object,
+                         double reflectance, python::Whole<"Mesh::classification", std::uint16_t> classification,
+                         bool ground, const std::optional<python::NumberArray>& texture,
                          const std::optional<SmoothInterface>& smooth,
                          const std::optional<std::array<double, 3>>& colour,
                          std::optional<py::array_t<std::uint8_t, py::array::c_style>> picture,
@@ -457,10 +459,7 @@ void bind_simulation(py::module_& m) {
           "triangles", [](const Simulation& s) { return s.scene().triangles; }, "Number of triangles in the scene.")
       .def_property_readonly(
           "memory", [](const Simulation& s) { return s.scene().memory; }, "Memory of the scene [byte].");
-  const auto runner = [](const Simulation& s) {
-    return [&s](const RunOptions& options, const auto& sink) { return pulsecast::run(s.survey(), options, sink); };
-  };
-  python::bind_run(simulation, runner, [](const Simulation& s) { return s.points(); });
+  bind_run_to_files(simulation);
   bind_accuracy(simulation);
 }
 
@@ -475,4 +474,5 @@ PYBIND11_MODULE(_core, m) {
   bind_mesh(m);
   bind_raycasting_scene(m);
   bind_simulation(m);
+  bind_write(m);
 }

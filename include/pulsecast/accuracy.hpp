@@ -71,7 +71,7 @@ struct SettingLadder {
 
 /// Survey with settings to choose. The functions take a value of each ladder.
 struct AdjustableSurvey {
-  using Values = std::span<const double>;
+  using Values = std::span<const double>;     ///< one value of each ladder
   std::vector<SettingLadder> ladders{};       ///< at least one
   std::function<AnySurvey(Values)> survey{};  ///< with these settings; the slots do not depend on them
   std::function<double(Values)> effort{};     ///< relative time of a pulse; empty: the number of subrays

@@ -72,6 +72,7 @@ struct ErrorSampleOptions {
 
 /// One echo of two surveys, or an echo of one of them.
 struct EchoMatch {
+  /// Echo of both, of the expected ones alone, or of the others alone.
   enum Kind : std::uint8_t { pair, lost, invented };
   std::uint32_t cluster = 0;                      ///< number of its cluster
   std::uint16_t classification = 0;               ///< class of the expected echo, or of the invented one

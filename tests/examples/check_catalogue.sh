@@ -72,7 +72,7 @@ for file in data/*.xml; do
       text = $0
       gsub(/[ \n]+/, " ", text)
       if (text !~ / --> ?$/) fault("a comment does not end where it should: " substr(text, 1, 60))
-      if (text ~ /SPDX-License-Identifier: MIT/) licence = 1
+      if (text ~ /SPDX-Licen[s]e-Identifier: MIT/) licence = 1
       comment = text
       next
     }

@@ -2,8 +2,8 @@
 # SPDX-FileCopyrightText: 2026 the pulsecast contributors
 # SPDX-License-Identifier: MIT
 
-# Holds docs/surveys.md against the reader of surveys. Usage: check_surveys_page.sh [--update] [ROOT [TABLES [PROGRAM]]]; prints every fault
-# and fails if there is one. Every name that the reader knows and every option of the survey program stand on the page in backticks. With
+# Holds the pages of surveys against their reader. Usage: check_surveys_page.sh [--update] [ROOT [TABLES [PROGRAM]]]; prints every fault
+# and fails if there is one. Every name that the reader knows and every option of the survey program stand on a page in backticks. With
 # TABLES, the program settings_tables, values and defaults in its tables are those of the reader; --update writes them. With PROGRAM, the
 # survey program, every example runs without a note.
 set -u
@@ -16,7 +16,8 @@ fi
 cd "${1:-.}" || exit 2
 tables=${2:-}
 program=${3:-}
-page=docs/surveys.md
+documents='docs/surveys.md docs/survey-scenes.md'  # the first has the document that examples of all change
+pages="$documents docs/program.md docs/results.md"
 work=$(mktemp -d) || exit 2
 trap 'rm -rf "$work"' EXIT
 faults=$work/faults
@@ -48,6 +49,7 @@ grep -o '"[A-Za-z][A-Za-z0-9_]*"' "$code" | tr -d '"' | sort -u > "$work/literal
 grep -vxF -f "$work/others" "$work/literals" > "$work/names"
 grep -vxF -f "$work/literals" "$work/others" | sed 's|^|tests/examples/check_surveys_page.sh: this is no literal any more: |' >> "$faults"
 
+# shellcheck disable=SC2086
 awk '/^```/ { inside = !inside; next }
      inside { next }
      {
@@ -56,20 +58,21 @@ awk '/^```/ { inside = !inside; next }
          gsub(/[^A-Za-z0-9_]+/, "\n", piece[i])
          print piece[i]
        }
-     }' "$page" | sort -u > "$work/words"
-grep -vxF -f "$work/words" "$work/names" | sed "s|^|$page does not name, in backticks: |" >> "$faults"
+     }' $pages | sort -u > "$work/words"
+grep -vxF -f "$work/words" "$work/names" | sed 's|^|no page of surveys names, in backticks: |' >> "$faults"
 
 # Options are the names in the calls that add them, and in the list of those without effect.
 grep -E 'add_(option|flag)\(|^ *(constexpr .*)?\{+"[A-Za-z]+", (true|false), "' examples/pulsecast/options.cpp |
   sed 's|type_name([^)]*)||' | grep -oE '"[-A-Za-z0-9,]+"' | tr -d '"' | tr ',' '\n' | sed 's|^-*||' | grep -vx survey |
   sort -u > "$work/options"
 [ "$(wc -l < "$work/options")" -gt 30 ] || echo "examples/pulsecast/options.cpp: the options cannot be found" >> "$faults"
-grep -vxF -f "$work/words" "$work/options" | sed "s|^|$page does not name, in backticks, the option: |" >> "$faults"
+grep -vxF -f "$work/words" "$work/options" | sed 's|^|no page of surveys names, in backticks, the option: |' >> "$faults"
 
 # ----------------------------------------------------------------------------------------------------------------- tables
 
 # In tables of attributes, keys and elements, the first cell has names of the reader.
-awk -v page="$page" -v names="$work/names" '
+# shellcheck disable=SC2086
+awk -v names="$work/names" '
   BEGIN { while ((getline name < names) > 0) known[name] = 1 }
   /^```/ { inside = !inside }
   inside || !/^\|/ { table = ""; next }
@@ -80,9 +83,9 @@ awk -v page="$page" -v names="$work/names" '
     n = split(cell[2], piece, "`")
     for (i = 2; i <= n; i += 2) {
       gsub(/[<>]/, "", piece[i])
-      if (!(piece[i] in known)) print page ":" FNR ": the reader does not know " piece[i]
+      if (!(piece[i] in known)) print FILENAME ":" FNR ": the reader does not know " piece[i]
     }
-  }' "$page" >> "$faults"
+  }' $pages >> "$faults"
 
 # The comment of a member names the attribute of its row, if it names any.
 awk '/^struct / { split("", said) }
@@ -103,14 +106,14 @@ awk '/^struct / { struct = $2 }
      /^  void fields\(FieldIo/ && struct !~ /^(AttributeSettings|LegSettings|ConicOptic|RotationList)$/ { print struct }' \
     include/pulsecast/helios/settings.hpp include/pulsecast/helios/detail/settings/*.hpp |
   while read -r struct; do
-    grep -qE "^<!-- rows of ([A-Za-z]+ )*$struct( [A-Za-z]+)* -->$" "$page" || echo "$page has no table with the rows of $struct"
+    # shellcheck disable=SC2086
+    grep -qE "^<!-- rows of ([A-Za-z]+ )*$struct( [A-Za-z]+)* -->$" $documents || echo "no page of surveys has a table with the rows of $struct"
   done >> "$faults"
 
 # A table below <!-- rows of STRUCT... --> has a row for each row of these settings, with the values and the default that the program
 # of tables prints; texts, vectors and what an absent value means are described on the page. A row for several attributes has the values of each. A row that is
 # missing gets the comment of the member in the header; its meaning may be told at more length on the page.
-if [ -n "$tables" ]; then
-  "$tables" > "$work/rows" || echo "$tables fails" >> "$faults"
+renewed_tables() {
   awk -v headers="$(printf '%s ' include/pulsecast/helios/settings.hpp include/pulsecast/helios/detail/settings/*.hpp)" '
     function comment(attribute,    n, file, k, line, member, said) {
       n = split(headers, file, " ")
@@ -168,12 +171,18 @@ if [ -n "$tables" ]; then
       }
     }
     { print }
-    END { if (wanted != "") finish() }' "$work/rows" "$page" > "$work/page"
-  [ -z "$update" ] || cat "$work/page" > "$page"
-  diff "$page" "$work/page" > "$work/differences" || {
-    sed "s|^|$page: |" "$work/differences"
-    echo "check_surveys_page.sh --update writes the tables anew"
-  } >> "$faults"
+    END { if (wanted != "") finish() }' "$work/rows" "$1"
+}
+if [ -n "$tables" ]; then
+  "$tables" > "$work/rows" || echo "$tables fails" >> "$faults"
+  for page in $documents; do
+    renewed_tables "$page" > "$work/page"
+    [ -z "$update" ] || cat "$work/page" > "$page"
+    diff "$page" "$work/page" > "$work/differences" || {
+      sed "s|^|$page: |" "$work/differences"
+      echo "check_surveys_page.sh --update writes the tables anew"
+    } >> "$faults"
+  done
 fi
 
 # --------------------------------------------------------------------------------------------------------------- examples
@@ -183,13 +192,17 @@ fi
 # name in the first document.
 examples=$work/examples
 mkdir "$examples"
+# shellcheck disable=SC2086
 awk -v folder="$examples" '
   /^```/ && file != "" { close(file); file = ""; next }
+  FNR == 1 { page = FILENAME; gsub(/.*\/|\.md$/, "", page) }
   /^```[a-z]+ [a-z_]+\.[a-z]+$/ { file = folder "/" $2; next }
-  /^```xml$/ { file = folder "/" sprintf("line%04d.part", FNR); next }
+  /^```xml$/ { file = folder "/" sprintf("%s_line%04d.part", page, FNR); next }
   /^```/ { file = "/dev/null"; next }
-  file != "" { print > file }' "$page"
-[ -f "$examples/yard.xml" ] || echo "$page has no yard.xml, which the other examples change" >> "$faults"
+  file != "" { print > file }' $documents
+for file in examples/yard/*; do
+  grep -v SPDX- "$file" | cmp -s - "$examples/${file##*/}" || echo "docs/surveys.md does not show $file, which the other examples change"
+done >> "$faults"
 for part in "$examples"/*.part; do
   if [ ! -f "$part" ] || [ ! -f "$examples/yard.xml" ]; then continue; fi
   whole=${part%.part}.xml
@@ -227,7 +240,7 @@ done
 if [ -n "$program" ]; then
   cd "$examples" || exit 2
   for document in *.xml; do
-    place="$page, example $document"
+    place="the pages of surveys, example $document"
     for command in check run; do
       "$program" $command "$document" --output "$work/output" > "$work/said" 2>&1 || echo "$place: $command fails"
       grep -E '^(note|error):' "$work/said" | sed "s|^|$place: $command says |"
@@ -242,4 +255,4 @@ if [ -s "$faults" ]; then
   cat "$faults"
   exit 1
 fi
-echo "The page is right: $(wc -l < "$work/names") names, $(find "$examples" -name '*.xml' | wc -l) examples."
+echo "The pages are right: $(wc -l < "$work/names") names, $(find "$examples" -name '*.xml' | wc -l) examples."

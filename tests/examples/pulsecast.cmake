@@ -124,6 +124,8 @@ expect(2 "unexpected argument './-more.xml': expected one document" check -- -da
 expect(0 "leg000.*2000.*strip00a" info ${SURVEY})
 expect(0 "test_preview.png" preview ${SURVEY} --output preview)
 expect(0 "" catalogue)
+expect(2 "unexpected argument.*doctor takes no document" doctor ${SURVEY})
+expect(0 "^version +[0-9.]+\nprocessor .*\nthreads +[1-9].*\nformats +xyz, .*\nmeshes .*\nPROJ .*\nlive page .*\nMPI .*\ncatalogue +[^\n]*catalogue: [1-9][0-9]* scanners, [1-9][0-9]* platforms, [1-9][0-9]* data sheets of sensors, [1-9][0-9]* spectra\n$" doctor)
 
 # faults are told before anything is left
 file(READ ${SURVEY} text)
@@ -177,7 +179,7 @@ endif()
 list(JOIN formats " " words)
 list(TRANSFORM formats REPLACE "(.+)" "`\\1`" OUTPUT_VARIABLE quoted)
 list(JOIN quoted ", " quoted)
-foreach(case "docs/surveys.md;| ${quoted}; `xyz` |" "examples/pulsecast/completion/pulsecast;-W \"${words}\"" "examples/pulsecast/completion/_pulsecast;(${words})")
+foreach(case "docs/program.md;| ${quoted}; `xyz` |" "examples/pulsecast/completion/pulsecast;-W \"${words}\"" "examples/pulsecast/completion/_pulsecast;(${words})")
   list(GET case 0 file)
   list(SUBLIST case 1 -1 expected)
   file(READ ${CMAKE_CURRENT_LIST_DIR}/../../${file} text)

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 the pulsecast contributors
 # SPDX-License-Identifier: MIT
-"""Compares the points and waveforms that the survey program writes in each format, as NumPy reads them, and runs the snippets of docs/surveys.md.
+"""Compares the points and waveforms that the survey program writes in each format, as NumPy reads them, and runs the snippets of docs/results.md.
 Usage: pulsecast_formats.py PROGRAM SURVEY DOCS FOLDER, where FOLDER is emptied."""
 
 import os

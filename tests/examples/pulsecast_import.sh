@@ -113,7 +113,12 @@ refused "$copied" "plane.stl: its import was killed"
 chmod -x "$copied-import"
 refused "$copied" "does not start: expected that program"
 rm "$copied-import"
-refused "$copied" "plane.stl: needs the program .*in a folder/bin/pulsecast-import, which does not exist.*Debian package: pulsecast"
+refused "$copied" "plane.stl: needs the program pulsecast-import, which is neither beside pulsecast nor in the PATH.*Debian package: pulsecast"
+"$copied" doctor | grep -q '^meshes .*missing: glTF.*Debian package: pulsecast' || fail "without its importer, doctor says $("$copied" doctor)"
+[ "$(PATH=$binaries:$PATH points "$copied" | md5sum)" = "$expected" ] || fail "an importer in the PATH is not found"
+importer 'echo pulsecast-import 0.0.1'
+"$copied" doctor | grep -q '^meshes .*missing: glTF.*of another version, pulsecast-import 0.0.1' || fail "with another importer, doctor says $("$copied" doctor)"
+rm "$copied-import"
 "$program-import" 2> messages
 grep -q "pulsecast, which starts it" messages || fail "an importer started by hand says: $(cat messages)"
 "$program-import" 1 > messages 2>&1 && fail "an importer with an output for a request ended well"

@@ -125,6 +125,17 @@ TEST_CASE("all fixed frames are in one message, which reaches late subscribers")
   CHECK(file.find("rosbag2") != file.npos);
 }
 
+TEST_CASE("frames that tf2 refuses are refused") {
+  const support::TemporaryFolder folder;
+  io::DriveBag bag(folder / "drive.mcap");
+  CHECK_THROWS_WITH_AS(static_cast<void>(bag.add<io::ros::Imu>("/imu", "/imu_link")),
+                       "DriveBag (frame) is '/imu_link': expected a name that begins without /", SettingError);
+  CHECK_THROWS_AS(static_cast<void>(bag.add<io::ros::Odometry>("/odom", "map", "/base_link")), SettingError);
+  CHECK_THROWS_AS(bag.fix({io::ros::frame_of("base_link", "/lidar", Pose<frame::Body, frame::Body>{})}), SettingError);
+  CHECK_THROWS_AS(bag.move(io::ros::frame_of("/base_link", "lidar", Pose<frame::Body, frame::Body>{}), {}),
+                  SettingError);
+}
+
 TEST_CASE("odometry has both of its frames, and a Livox the time of its scan") {
   const TemporaryFolder folder;
   DriveBag bag(folder / "a.mcap", 1000);

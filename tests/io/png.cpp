@@ -138,6 +138,28 @@ TEST_CASE("points land where a map shows them") {
   }
 }
 
+TEST_CASE("a picture may be filled by what stands on the ground, if anything does") {
+  std::vector<Point> points;  // wavy ground of 200 m by 200 m, and a flat roof of 10 m by 10 m
+  for (int x = 0; x <= 200; x += 2)
+    for (int y = 0; y <= 200; y += 2) points.push_back({{double(x), double(y), 2 * std::sin(0.05 * x)}});
+  const std::size_t ground = points.size();
+  for (int x = 0; x <= 40; ++x)
+    for (int y = 0; y <= 40; ++y) points.push_back({{120 + 0.25 * x, 60 + 0.25 * y, 8}});
+  const auto drawn_in_row = [&](int row, FrameOn frame_on) {
+    ImageSettings settings = map;
+    settings.frame_on = frame_on;
+    const Picture picture = decoded(png(points, settings));
+    int count = 0;
+    for (int x = 0; x < picture.width; ++x) count += picture.at(x, row) != white;
+    return count;
+  };
+  CHECK(drawn_in_row(50, FrameOn::all) > 90);       // the ground, 0.475 px/m
+  CHECK(drawn_in_row(50, FrameOn::standing) > 78);  // the roof, 8 px/m
+  CHECK(drawn_in_row(95, FrameOn::standing) < 60);  // ground points, 16 px apart
+  points.resize(ground + 50);                       // fewer than one in a hundred: all again
+  CHECK(drawn_in_row(50, FrameOn::standing) == drawn_in_row(50, FrameOn::all));
+}
+
 TEST_CASE("the azimuth turns the map, so that what it names is up") {
   const std::vector<Point> points{{{0, 0, 0}}, {{10, 0, 0}, 1}};  // the second lies east of the first
   ImageSettings settings = map;

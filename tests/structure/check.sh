@@ -252,17 +252,17 @@ unclaimed_includes() {
 }
 rule 'CMakeLists.txt knows what a header needs' unclaimed_includes
 
-# The table of the README is the list of the public headers beside the core.
+# The table of targets is the list of the public headers beside the core.
 differences_of_table() {
   for header in include/pulsecast/io/*.hpp include/pulsecast/helios/*.hpp include/pulsecast/mpi/*.hpp include/pulsecast/page/*.hpp include/pulsecast/python/*.hpp; do
     name=${header#include/pulsecast/}
-    grep -q "^|.*\`${name%.hpp}\`" README.md || echo "$header"
+    grep -q "^|.*\`${name%.hpp}\`" docs/architecture.md || echo "$header"
   done
-  sed -n '/^| target/,/^$/p' README.md | grep -oE '`(io|helios|mpi|page|python)/[a-z_]+`' | tr -d '`' | while read -r name; do
-    [ -f "include/pulsecast/$name.hpp" ] || echo "README.md: there is no $name.hpp"
+  sed -n '/^| target/,/^$/p' docs/architecture.md | grep -oE '`(io|helios|mpi|page|python)/[a-z_]+`' | tr -d '`' | while read -r name; do
+    [ -f "include/pulsecast/$name.hpp" ] || echo "docs/architecture.md: there is no $name.hpp"
   done
 }
-rule "the README's table lists the public headers" differences_of_table
+rule 'the table of targets lists the public headers' differences_of_table
 
 # shellcheck disable=SC2046
 rule 'every public name stands on a page' awk -f tests/structure/public_names.awk README.md docs/*.md $(echo "$headers" | grep -v /detail/)
@@ -270,6 +270,24 @@ rule 'every public name stands on a page' awk -f tests/structure/public_names.aw
 # Links from page to page, to headings of them, and to other files of the tree.
 # shellcheck disable=SC2046
 rule 'every link of a page leads somewhere' awk -f tests/structure/links.awk ./*.md $(find docs -name '*.md')
+
+# Tables and code are looked up, not read.
+# shellcheck disable=SC2046
+rule 'a page has at most 5,000 words beside its tables and code' awk '
+  FNR == 1 { code = words = 0 }
+  /^ *```/ { code = !code }
+  !code && !/^\|/ { words += NF }
+  words > 5000 { print FILENAME ":" FNR; nextfile }' README.md CONTRIBUTING.md $(find docs -name '*.md')
+
+# Every picture is shown and drawn by the gallery.
+undrawn_pictures() {
+  commands=$(awk '/^```/ { inside = !inside } inside' docs/gallery.md)
+  for picture in docs/pictures/*; do
+    name=${picture##*/}
+    grep -qF "](pictures/$name)" docs/gallery.md && echo "$commands" | grep -qw "${name%.*}" || echo "$picture"
+  done
+}
+rule 'docs/gallery.md shows every picture, and has the command of each' undrawn_pictures
 
 # Every C++ block of the README is a whole example, without its licence lines.
 blocks=$(mktemp -d) || exit 2
@@ -301,7 +319,7 @@ other_versions() {
   version=$(sed -nE 's/^#define PULSECAST_VERSION "(.*)"$/\1/p' include/pulsecast/version.hpp)
   grep -HnoE 'find_package\(pulsecast [0-9.]+' README.md docs/*.md docs/packaging/* tests/package/*.txt 2> /dev/null | grep -vF "pulsecast ${version%.*}"
   sed -nE 's/^## ([0-9.]+).*/CHANGELOG.md: \1/p' CHANGELOG.md | head -n 1 | grep -vxF "CHANGELOG.md: $version"
-  grep -HnE '"?version"?[ =:]+"' docs/packaging/*/*.py docs/packaging/*/*/*.json | grep -vF "\"$version\""
+  grep -HnE '"?version"?[ =:]+"' CITATION.cff docs/packaging/*/*.py docs/packaging/*/*/*.json | grep -vF "\"$version\""
 }
 rule 'every page and recipe states the version of version.hpp' other_versions
 

@@ -13,8 +13,8 @@ tried=0
 fresh() {
   rm -rf "$copy/tree" && mkdir "$copy/tree" && cd "$copy/tree" || exit 2
   cp -R "$root/include" "$root/examples" "$root/tests" "$root/bench" "$root/.ci" "$root/CMakeLists.txt" . || exit 2
-  mkdir docs && cp -R "$root"/docs/*.md "$root/docs/packaging" "$root/docs/tables" docs && ln -s "$root/docs/pictures" "$root/docs/notebooks" docs || exit 2
-  cp "$root"/*.md "$root"/*.json . 2> /dev/null
+  mkdir docs && cp -R "$root"/docs/*.md "$root/docs/packaging" "$root/docs/tables" "$root/docs/for" docs && ln -s "$root/docs/pictures" "$root/docs/notebooks" docs || exit 2
+  cp "$root"/*.md "$root"/*.json "$root"/*.cff . 2> /dev/null
 }
 
 # notices RULE COMMAND: check.sh says RULE once COMMAND was run in a copy, and does not say it of the tree as it is. Of the copy, the check
@@ -44,8 +44,8 @@ notices "$below" "$add #include <pulsecast/scene/scene.hpp>\" include/pulsecast/
 notices "$below" "$add #include <pulsecast/io/las.hpp>\" include/pulsecast/run.hpp"
 notices "$below" "$add #include <pulsecast/page/page.hpp>\" include/pulsecast/mpi/run.hpp"
 notices "no room includes another's detail/" "$add #include <pulsecast/io/detail/las/settings.hpp>\" include/pulsecast/mpi/las.hpp"
-notices "the README's table lists the public headers" 'cp include/pulsecast/io/las.hpp include/pulsecast/io/other.hpp'
-notices "the README's table lists the public headers" 'rm include/pulsecast/io/text_files.hpp'
+notices 'the table of targets lists the public headers' 'cp include/pulsecast/io/las.hpp include/pulsecast/io/other.hpp'
+notices 'the table of targets lists the public headers' 'rm include/pulsecast/io/text_files.hpp'
 notices "$below" "mkdir include/pulsecast/utils && cp include/pulsecast/pulse.hpp include/pulsecast/utils"
 notices 'GLM is named in base/vector.hpp only' "echo 'inline glm::dvec3 v;' >> include/pulsecast/pulse.hpp"
 threads='threads live in run.hpp, its reorder buffer and three headers of base/ only'
@@ -98,6 +98,8 @@ notices "$public" "sed -i 's/LinkBudget//g' docs/*.md"
 links='every link of a page leads somewhere'
 notices "$links" 'rm docs/tables/extremes.md'
 notices "$links" 'sed -i "s/^## Ray queries/## Queries/" docs/scenes.md && echo "[queries](docs/scenes.md#ray-queries)" >> README.md'
+notices 'a page has at most 5,000 words beside its tables and code' 'cat docs/architecture.md docs/physics.md docs/cookbook.md >> docs/io.md'
+notices 'docs/gallery.md shows every picture, and has the command of each' 'sed -i s/rotating_head// docs/gallery.md'
 notices 'the code in the README is compiled' "printf '\140\140\140cpp\nint x;\n\140\140\140\n' >> README.md"
 notices 'the README shows examples/embed.cpp' 'echo "// more" >> examples/embed.cpp'
 versions='every page and recipe states the version of version.hpp'
@@ -105,6 +107,7 @@ notices "$versions" 'sed -i "s/find_package(pulsecast [0-9.]*/find_package(pulse
 notices "$versions" 'sed -i "s/find_package(pulsecast [0-9.]*/find_package(pulsecast 0.0/" tests/package/CMakeLists.txt'
 notices "$versions" 'sed -i "0,/^## [0-9.]*/s//## 0.0.1/" CHANGELOG.md'
 notices "$versions" 'sed -i "s/version = .*/version = \"0.0.1\"/" docs/packaging/conan/conanfile.py'
+notices "$versions" 'sed -i "s/^version: .*/version: \"0.0.1\"/" CITATION.cff'
 
 # commas LINE: what commas.awk prints of a line of C++.
 commas() {

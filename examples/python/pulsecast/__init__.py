@@ -13,6 +13,11 @@ Settings are dataclasses; numbers are in SI units and radians.
 
 from pathlib import Path
 
+try:
+    import numpy as _
+except ImportError:
+    raise ImportError("pulsecast needs NumPy: expected the Debian package python3-numpy, or `pip install numpy`") from None
+
 from ._core import *  # noqa: F403
 from ._core import __version__
 from . import _core

@@ -28,7 +28,7 @@ PULSECAST_UNIT(_kHz, v * 1e3L)
 PULSECAST_UNIT(_MHz, v * 1e6L)
 PULSECAST_UNIT(_rad, v)
 PULSECAST_UNIT(_mrad, v * 1e-3L)
-PULSECAST_UNIT(_deg, (v * std::numbers::pi_v<long double>) / 180.0L)
+PULSECAST_UNIT(_deg, (v * 3.14159265358979323846264338327950288L) / 180.0L)  // libc++'s long double pi is a double's
 PULSECAST_UNIT(_W, v)
 PULSECAST_UNIT(_mW, v * 1e-3L)
 PULSECAST_UNIT(_nW, v * 1e-9L)

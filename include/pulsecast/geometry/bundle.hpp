@@ -76,6 +76,7 @@ struct RayBundle : BundleOrigin {
     z[j] = d.z;
   }
 
+  /// Directions of a register of rays.
   struct Directions {
     simd::Doubles x, y, z;  ///< components of the directions of a register of rays
   };

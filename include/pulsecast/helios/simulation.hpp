@@ -21,6 +21,7 @@ struct SettingsChoice;
 namespace PULSECAST_NAMESPACE::helios {
 
 struct CompiledSurvey;
+struct SurveySettings;
 
 /// Settings that trade accuracy for speed, for all channels. Default: those of the survey.
 struct ReceiverOverrides {
@@ -59,7 +60,7 @@ class Simulation {
     bool waveform_noise = false;                  ///< add receiver noise
     bool fixed_incidence = false;                 ///< perpendicular incidence, for scattering
     bool uncertainty = false;                     ///< `points` have the uncertainty of echoes
-    bool library_physics = false;                 ///< not that of HELIOS++: docs/surveys.md
+    bool library_physics = false;                 ///< not that of HELIOS++: docs/program.md
     bool light_paths = false;                     ///< multi-bounce light, also without `<light>`
     bool platform_noise = true;                   ///< as in the survey; false: none
     bool leg_noise = true;                        ///< random leg offsets as in the survey; false: none
@@ -89,6 +90,8 @@ class Simulation {
   [[nodiscard]] virtual const AnySurvey& survey() const noexcept = 0;
   /// Warnings of the scene, legs and receivers, each once.
   [[nodiscard]] virtual const std::vector<std::string>& warnings() const noexcept = 0;
+  [[nodiscard]] virtual const SurveySettings& document() const noexcept = 0;  ///< settings it was loaded from
+  [[nodiscard]] virtual const Settings& settings() const noexcept = 0;        ///< options of loading
   /// Legs and their pulses: helios/survey.hpp.
   [[nodiscard]] virtual const CompiledSurvey& compiled() const noexcept = 0;
   [[nodiscard]] virtual Scene scene() const = 0;  ///< size of the scene

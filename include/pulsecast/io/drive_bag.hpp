@@ -43,9 +43,11 @@ class DriveBag {
     fixed_ = {add_channel<ros::TFMessage>("/tf_static", transient_local)};
   }
 
-  /// Adds a topic. @throws SettingError beyond 65,535
+  /// Adds a topic. @throws SettingError beyond 65,535, or for a frame that begins with /, which tf2 refuses
   template <ros::RosMessage M>
   [[nodiscard]] BagTopic<M> add(std::string topic, std::string frame_id, std::string child_frame_id = {}) {
+    check_frame(frame_id);
+    check_frame(child_frame_id);
     return {add_channel<M>(std::move(topic), ""), std::move(frame_id), std::move(child_frame_id)};
   }
 
@@ -58,6 +60,7 @@ class DriveBag {
     ros::serialize(message, message_);
     keep(topic.channel, tick, complete);
   }
+  /// Appends a message that is complete at its tick.
   template <ros::RosMessage M>
   void write(const BagTopic<M>& topic, const M& message, const Tick& tick) {
     write(topic, message, tick, tick);
@@ -118,6 +121,10 @@ class DriveBag {
                               .metadata = {{"offered_qos_profiles", quality}}});
   }
 
+  static void check_frame(std::string_view name) {
+    if (name.starts_with('/'))
+      throw SettingError("DriveBag (frame)", text::joined({" is '", name, "': expected a name that begins without /"}));
+  }
   [[nodiscard]] std::uint64_t stamp(const Tick& tick) const {
     return ros::stamp_ns(start_time_, tick, "DriveBag::start_time + tick");
   }
@@ -126,7 +133,11 @@ class DriveBag {
   }
 
   void put_frames(const BagTopic<ros::TFMessage>& topic, std::span<ros::TransformStamped> frames, const Tick& tick) {
-    for (ros::TransformStamped& frame : frames) frame.header = header(tick, frame.header.frame_id);
+    for (ros::TransformStamped& frame : frames) {
+      check_frame(frame.header.frame_id);
+      check_frame(frame.child_frame_id);
+      frame.header = header(tick, frame.header.frame_id);
+    }
     ros::serialize(ros::TFMessage{frames}, message_);
     keep(topic.channel, tick, tick);
   }

@@ -19,7 +19,7 @@ struct MaterialLibrary {
 
 /// Reads an MTL file. Colours select the law: `Ks` Phong's, with `Ns`, `Kd` alone Lambert's. Reflectance is
 /// `helios_reflectance`, a fraction, or the spectrum named by `helios_spectra`. Others in use are `helios_isGround`,
-/// `helios_classification`, `illum`, `Ni`, `Tf`, `Pm` and those of this library, see docs/surveys.md; pictures are
+/// `helios_classification`, `illum`, `Ni`, `Tf`, `Pm` and those of this library, see docs/survey-scenes.md; pictures are
 /// `map_Kd` (colour of points), `map_d` (outline) and `pulsecast_reflectanceMap`, without options. Of equal names, the
 /// first counts; keys before any are of "default". Throws a `FileError` with path and line at the first error.
 [[nodiscard]] MaterialLibrary read_mtl(const std::filesystem::path& path, const SpectralLibrary& spectra = {});

@@ -33,7 +33,7 @@ struct PointField {
 
 /// Fields of a layout as those of a message, which has no 64-bit integers.
 struct PointFields {
-  using value_type = PointField;
+  using value_type = PointField;         ///< of the range
   std::span<const io::PointField> of{};  ///< of a layout
 
   [[nodiscard]] std::size_t size() const noexcept { return of.size(); }

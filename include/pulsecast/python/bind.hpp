@@ -12,6 +12,7 @@
 
 #include <pulsecast/python/detail/batch.hpp>
 #include <pulsecast/python/detail/exceptions.hpp>
+#include <pulsecast/python/detail/whole.hpp>
 
 /// Python bindings of surveys: any compile-time pipeline becomes a class with runs to NumPy arrays.
 ///
@@ -78,7 +79,8 @@ struct RunRequest {
   bool pulses = true;                            ///< true to keep pulses and waveforms
   /// True to keep points by column, or the names of the columns that are kept
   std::variant<bool, std::vector<std::string>> columns = false;
-  bool colours = false;  ///< true to keep colours of points
+  bool colours = false;                        ///< true to keep colours of points
+  pybind11::object survey = pybind11::none();  ///< what batches are of
 
   void validate() const {
     require_not_negative("run every_seconds", every_seconds, "s");
@@ -139,9 +141,14 @@ template <class Run>
     const pybind11::gil_scoped_acquire gil;
     request.progress(p.done, p.total, p.echoes, p.seconds);
   };
+  const auto taken = [&] {
+    Batch batch = rows.take();
+    batch.survey = request.survey;
+    return batch;
+  };
   const auto deliver = [&] {
     const pybind11::gil_scoped_acquire gil;
-    request.callback(rows.take());
+    request.callback(taken());
     delivered = Clock::now();
   };
   const auto sink = [&](const EchoBatch& batch) {
@@ -154,7 +161,7 @@ template <class Run>
   watch.during([&] { summary = run(options, sink); });
   const bool interrupted = watch.interrupted();
   if (has_callback && rows.pulses() > 0) deliver();
-  Batch result = rows.take();
+  Batch result = taken();
   result.summary = summary;
   if (!interrupted) return result;
   raise(Exceptions{}.interrupted, "the survey was stopped", std::pair{"result", pybind11::cast(std::move(result))});
@@ -172,26 +179,39 @@ inline void bind_common(pybind11::module_& m) {
   bind_batch(m);
 }
 
-/// Adds the method `run` to a class; `runner(self)` returns a callable of options and sink,
-/// `extras(self)` the `io::PointSettings` of its points.
-template <class Class, class Runner, class Extras>
-void bind_run(Class& bound, const Runner& runner, const Extras& extras) {
+/// Adds the method `run` to a class; `runner(self, request, further...)` returns a callable of options and sink,
+/// `extras(self)` the `io::PointSettings` of its points. Further arguments of `run` are of types `Further`: `arguments`
+/// describe them, and `doc`.
+template <class... Further, class Class, class Runner, class Extras, class... Arguments>
+void bind_run(Class& bound, const Runner& runner, const Extras& extras, const std::string& doc = "",
+              const Arguments&... arguments) {
   namespace py = pybind11;
   using Self = typename Class::type;
   bound.def(
       "run",
-      [runner, extras](const Self& self, unsigned threads, PulseIndex first, std::optional<PulseIndex> end,
-                       PulseIndex stride, py::object callback, PulseIndex every_pulses, double every_seconds,
-                       py::object progress, bool pulses, std::variant<bool, std::vector<std::string>> columns,
-                       bool colours) {
-        return python::run({threads, first, end, stride, std::move(callback), std::move(progress), every_pulses,
-                            every_seconds, pulses, std::move(columns), colours},
-                           extras(self), runner(self));
+      [runner, extras](const py::object& survey, Whole<"run threads", unsigned> threads, Whole<"run first"> first,
+                       std::optional<Whole<"run end">> end, Whole<"run stride"> stride, py::object callback,
+                       Whole<"run every_pulses"> every_pulses, double every_seconds, py::object progress, bool pulses,
+                       std::variant<bool, std::vector<std::string>> columns, bool colours, const Further&... further) {
+        const auto& self = survey.cast<const Self&>();
+        const RunRequest request{threads,
+                                 first,
+                                 end,
+                                 stride,
+                                 std::move(callback),
+                                 std::move(progress),
+                                 every_pulses,
+                                 every_seconds,
+                                 pulses,
+                                 std::move(columns),
+                                 colours,
+                                 survey};
+        return python::run(request, extras(self), runner(self, request, further...));
       },
       py::arg("threads") = 0, py::arg("first") = 0, py::arg("end") = py::none(), py::arg("stride") = 1,
       py::arg("callback") = py::none(), py::arg("every_pulses") = 0, py::arg("every_seconds") = 0.0,
       py::arg("progress") = py::none(), py::arg("pulses") = true, py::arg("columns") = false,
-      py::arg("colours") = false,
+      py::arg("colours") = false, arguments...,
       ("Simulates the pulse slots first, first + stride, ... before end, on `threads` threads (0: all, at most 1024), "
        "and returns a Batch. With a callback, batches go to callback(batch) every `every_pulses` pulses or "
        "`every_seconds` seconds, and at the end, and are not kept. progress(done, total, echoes, seconds) is called "
@@ -201,8 +221,8 @@ void bind_run(Class& bound, const Runner& runner, const Extras& extras) {
        "or of " +
        described(io::point_columns) +
        ". colours=True keeps their colours, by one more ray each. Raises Interrupted on Ctrl-C; its `result` is "
-       "complete "
-       "up to there.")
+       "complete up to there." +
+       doc)
           .c_str());
 }
 
@@ -222,7 +242,7 @@ auto bind_survey(pybind11::module_& m, const char* name, const Extras& extras) {
       m, name, "A survey: a pure function from the number of a pulse to its echoes.");
   bound.def("__len__", &Survey::size, "Number of pulse slots.");
   bound.def_property_readonly("subrays", &Survey::subrays, "Number of subrays of a pulse.");
-  const auto runner = [](const Survey& survey) {
+  const auto runner = [](const Survey& survey, const RunRequest& /*request*/) {
     return [&survey](const RunOptions& how, const auto& sink) { return pulsecast::run(survey, how, sink); };
   };
   python::bind_run(bound, runner, extras);

@@ -187,7 +187,7 @@ Class& bind_ray_queries(Class&& bound) {
                          classification, front);
   const auto add = [&](const char* name, auto query, const std::string& doc) {
     const auto ask = [query](const World& scene, NumberArray rays, std::optional<NumberArray> directions, double near,
-                             double far, NumberArray time, std::uint64_t seed, unsigned threads) {
+                             double far, NumberArray time, Whole<"seed"> seed, Whole<"threads", unsigned> threads) {
       return query(scene, {std::move(rays), std::move(directions), std::move(time), near, far, seed}, threads);
     };
     detail::ray_arguments([&](const auto&... more) { bound.def(name, ask, more..., doc.c_str()); })();
@@ -207,14 +207,15 @@ Class& bind_ray_queries(Class&& bound) {
   add("occluded", &detail::occluded<World>, "Boolean array: True for each ray with a hit." + asked);
   const auto run = [](const World& scene, const NumberArray& poses, NumberArray rays,
                       std::optional<NumberArray> directions, double near, double far, NumberArray time,
-                      std::uint64_t seed, unsigned threads, const py::object& out) {
+                      Whole<"seed"> seed, Whole<"threads", unsigned> threads, const py::object& out) {
     const auto scene_at = [&](std::size_t) noexcept -> const World& { return scene; };
     return detail::run_batch<World>(
         scene_at, poses, {std::move(rays), std::move(directions), std::move(time), near, far, seed}, threads, out);
   };
   const auto run_in = [](const py::sequence& scenes, const py::object& scene_of, const NumberArray& poses,
                          NumberArray rays, std::optional<NumberArray> directions, double near, double far,
-                         NumberArray time, std::uint64_t seed, unsigned threads, const py::object& out) {
+                         NumberArray time, Whole<"seed"> seed, Whole<"threads", unsigned> threads,
+                         const py::object& out) {
     return detail::run_batch_in<World>(scenes, scene_of, poses,
                                        {std::move(rays), std::move(directions), std::move(time), near, far, seed},
                                        threads, out);

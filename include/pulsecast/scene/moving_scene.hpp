@@ -114,8 +114,7 @@ class MovingScene {
   }
 
  private:
-  template <class Map>
-  requires requires(const Map& map) { map.parts(); }
+  template <detail::HasParts Map>
   friend class WithoutObject;
   using AnyPart = typename Scene<Shapes...>::AnyPart;
 

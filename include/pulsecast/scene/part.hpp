@@ -219,6 +219,12 @@ struct Part {
   Attributes attributes{};                     ///< of its points, by `ObjectAttributes`
 };
 
+namespace detail {
+/// `Scene` or `MovingScene`.
+template <class Map>
+concept HasParts = requires(const Map& map) { map.parts(); };
+}  // namespace detail
+
 }  // namespace PULSECAST_NAMESPACE
 
 #endif

@@ -170,8 +170,7 @@ class Scene {
  private:
   template <Geometry... OfMoving>
   friend class MovingScene;
-  template <class Map>
-  requires requires(const Map& map) { map.parts(); }
+  template <detail::HasParts Map>
   friend class WithoutObject;
 
   enum class Motions : std::uint8_t { refused, left_out };

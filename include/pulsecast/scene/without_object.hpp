@@ -11,8 +11,7 @@ namespace PULSECAST_NAMESPACE {
 /// to the bit, of a scene without the parts of this `Part::object`. Refers to the scene, which must outlive it, and may
 /// be assigned anew. Each sensor may ignore another object of one scene; sensors that ignore none take the scene
 /// itself. Of a `Layered`, the layer that has the object is seen without it.
-template <class Map>
-requires requires(const Map& map) { map.parts(); }
+template <detail::HasParts Map>
 class WithoutObject {
  public:
   /// Refers to a scene.

@@ -327,6 +327,19 @@ def test_a_mesh_that_cannot_be_is_refused(vertices, triangles, field):
     assert field in error.value.field
 
 
+@pytest.mark.parametrize(("ask", "says"), [
+    (lambda: pulsecast.Mesh(*SQUARE, classification=70000), "Mesh::classification is 70000, but must be a whole number from 0 to 65535"),
+    (lambda: pulsecast.Mesh(*SQUARE, object=-1), "Mesh::object is -1, but must be a whole number from 0 to 4294967295"),
+    (lambda: own_scanner.RosetteSurvey(10).run(end=2**64), "run end is 1.8446744073709552e\\+19, but must be a whole number from 0 to 1844"),
+    (lambda: own_scanner.RosetteSurvey(10).run(every_pulses=-10**400), "run every_pulses is "),
+    (lambda: pulsecast.RaycastingScene([pulsecast.Mesh(*SQUARE)]).occluded(np.zeros((1, 6)), seed=-3), "^seed is -3"),
+])
+def test_whole_numbers_out_of_range_are_refused_in_a_sentence(ask, says):
+    with pytest.raises(pulsecast.SettingError, match=says) as refused:
+        ask()
+    assert "\n" not in str(refused.value)
+
+
 def test_the_corners_of_triangles_are_whole_numbers():
     with pytest.raises(TypeError, match="whole numbers, not float64"):
         pulsecast.Mesh(SQUARE[0], [[0, 1.7, 2]])
@@ -492,8 +505,8 @@ def test_objects_say_what_they_are(survey):
 
 @pytest.mark.parametrize(("asked", "error"), [
     ({"callback": 3}, TypeError), ({"progress": "loud"}, TypeError), ({"callback": print, "every_seconds": -1}, ValueError),
-    ({"callback": print, "every_seconds": math.nan}, ValueError), ({"stride": 0}, ValueError), ({"threads": -1}, TypeError),
-    ({"threads": 1025}, ValueError),
+    ({"callback": print, "every_seconds": math.nan}, ValueError), ({"stride": 0}, ValueError), ({"threads": -1}, ValueError),
+    ({"threads": 1025}, ValueError), ({"threads": 0.5}, TypeError), ({"first": True, "end": "2"}, TypeError),
 ])
 def test_what_a_run_cannot_be_asked_is_refused_before_it_begins(survey, asked, error):
     begun = []

@@ -132,7 +132,8 @@ def test_functions_have_the_parameters_that_pybind11_knows_of(name):
     parameters = re.findall(r"(\*|\w+)(?:: [\w:.]+(?:\[[^=\]]*\]+)?)?(?: = ([^,]+))?(?:, |$)", known)
     written = FUNCTIONS[name].args
     plain = [one.arg for one in written.args]
-    assert [one for one, _ in parameters] == plain + (["*"] if written.kwonlyargs else []) + [one.arg for one in written.kwonlyargs]
+    by_name = (["*"] if written.kwonlyargs else []) + [one.arg for one in written.kwonlyargs] + ([written.kwarg.arg] if written.kwarg else [])
+    assert [one for one, _ in parameters] == plain + by_name
     with_default = list(zip(plain[len(plain) - len(written.defaults):], written.defaults)) + [
         (one.arg, value) for one, value in zip(written.kwonlyargs, written.kw_defaults) if value]
     said = {one: ast.unparse(value) for one, value in with_default}

@@ -42,6 +42,9 @@ if TYPE_CHECKING:
     pulsecast.LegSettings(speed=3)  # wrong
     pulsecast.Simulation(survey, [])  # wrong: by name only
     simulation.run(callback=lambda: None)  # wrong
+    simulation.run(output=3)  # wrong
+    simulation.run(output=["floor.laz", "floor.html"], las_scale=1e-3, format="laz", colours=True)
+    batches[0].write("floor.ply", ["age"])  # wrong: by name only
     simulation.memory = 0  # wrong
     simulation.bounds[0]  # wrong: may be None
     channel.optic = 3  # wrong

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
 
-// Prints the rows of all settings of surveys, for the tables of docs/surveys.md: struct, attribute, values and default.
+// Prints the rows of all settings of surveys, for the tables of docs/surveys.md and docs/survey-scenes.md: struct, attribute, values and default.
 
 #include <algorithm>
 #include <cstdio>

@@ -241,6 +241,8 @@ class LoadedSimulation final : public Simulation {
 
   [[nodiscard]] const AnySurvey& survey() const noexcept override { return joined_.survey; }
   [[nodiscard]] const std::vector<std::string>& warnings() const noexcept override { return warnings_; }
+  [[nodiscard]] const SurveySettings& document() const noexcept override { return loaded_->inputs->survey; }
+  [[nodiscard]] const Settings& settings() const noexcept override { return loaded_->inputs->settings; }
   [[nodiscard]] const CompiledSurvey& compiled() const noexcept override { return *loaded_->compiled; }
 
   [[nodiscard]] Scene scene() const override {

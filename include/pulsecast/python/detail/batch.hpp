@@ -23,6 +23,7 @@ struct Batch {
   pybind11::dict columns{};            ///< arrays by name; those of rows only if `by_column`
   bool by_column = false;              ///< true if points are kept by column, and not as rows
   RunSummary summary{};                ///< of the whole run; empty in a batch for a callback
+  pybind11::object survey{};           ///< survey of the run; none in a copy
 };
 
 /// Kinds of data that a `RowSink` keeps.

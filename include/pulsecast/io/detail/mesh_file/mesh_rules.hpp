@@ -51,15 +51,15 @@ inline constexpr auto obj_rules = std::to_array<FormatRule>({
 
 /// Keys of MTL files. Source: MTL specification, Wavefront 1995; the extension for physically based shading; HELIOS++.
 inline constexpr auto mtl_rules = std::to_array<FormatRule>({
-    {"newmtl, Kd, Ks, Ns", FormatUse::read, "[law of reflected light](surveys.md)"},
-    {"illum, Ni, Tf, Pm", FormatUse::read, "[mirrors, glass and panes](surveys.md)"},
+    {"newmtl, Kd, Ks, Ns", FormatUse::read, "[law of reflected light](survey-scenes.md#materials)"},
+    {"illum, Ni, Tf, Pm", FormatUse::read, "[mirrors, glass and panes](survey-scenes.md#materials)"},
     {"map_Kd, map_d, pulsecast_reflectanceMap", FormatUse::read, "pictures of colours, outline and reflectance"},
     {"helios_reflectance, helios_spectra", FormatUse::read, "reflectance, or the spectrum of a library"},
     {"helios_isGround, helios_classification", FormatUse::read, "place for set-ups, and class of points"},
     {"pulsecast_normalizedPhong, pulsecast_interface, pulsecast_medium, pulsecast_water, pulsecast_roughness, "
      "pulsecast_retroreflection, pulsecast_retroreflector",
-     FormatUse::read, "[laws and media of this library](surveys.md)"},
-    {"pulsecast_*", FormatUse::refused, "a key that docs/surveys.md has"},
+     FormatUse::read, "[laws and media of this library](survey-scenes.md#materials)"},
+    {"pulsecast_*", FormatUse::refused, "a key that docs/survey-scenes.md has"},
     {"d below 1, Tr above 0", FormatUse::noted,
      "the surface is opaque; map_d cuts holes, pulsecast_interface makes panes"},
     {"d, Tr", FormatUse::read, "an opaque surface"},

@@ -11,6 +11,9 @@ namespace PULSECAST_NAMESPACE::io {
 /// Meaning of a point's colour.
 enum class ColourBy : std::uint8_t { height, intensity, object, classification, return_number, kind };
 
+/// What fills a picture: all points, or, where they are one in a hundred or more, those of what stands on the ground.
+enum class FrameOn : std::uint8_t { all, standing };
+
 /// Settings of a picture.
 struct ImageSettings {
   int width = 1600;                       ///< width of the picture [px]
@@ -18,7 +21,8 @@ struct ImageSettings {
   double azimuth = radians(30);           ///< viewing direction, clockwise from north [rad]
   double elevation = radians(30);         ///< viewing direction below the horizon [rad]
   double field_of_view = radians(30);     ///< angle across the scene; 0: parallel projection [rad]
-  std::optional<Vec3> eye{};              ///< place of the camera; default: frames all [m]
+  std::optional<Vec3> eye{};              ///< place of the camera; default: frames the points [m]
+  FrameOn frame_on = FrameOn::all;        ///< points that fill the picture, without an eye
   ColourBy colour_by = ColourBy::height;  ///< meaning of the colours
   double point_size = 0;                  ///< diameter in mid-scene; 0 to close the gaps [px]
   Srgb background{13, 17, 23};            ///< colour of the background
@@ -63,6 +67,28 @@ struct ImagePoint {
   return {at(share), at(1 - share)};
 }
 
+/// Points that stand out of what is lowest in their cell of a grid of 64 by 64 over all, by 0.5 m and a quarter of the
+/// cell: crowns, trunks, walls, masts, but no slopes. None if fewer than one in a hundred do.
+[[nodiscard]] inline std::vector<ImagePoint> standing(std::span<const ImagePoint> points) {
+  constexpr std::size_t cells = 64;
+  const auto [west, east] = percentiles(points, 0.001, [](const ImagePoint& p) { return static_cast<double>(p.x); });
+  const auto [south, north] = percentiles(points, 0.001, [](const ImagePoint& p) { return static_cast<double>(p.y); });
+  const double size = std::max({east - west, north - south, 1e-3}) / cells;
+  const auto cell = [&](const ImagePoint& p) {
+    const auto along = [&](double offset) {
+      return static_cast<std::size_t>(std::clamp(offset / size, 0.0, cells - 1.0));
+    };
+    return along(p.y - south) * cells + along(p.x - west);
+  };
+  std::vector<float> lowest(cells * cells, std::numeric_limits<float>::infinity());
+  for (const ImagePoint& p : points) lowest[cell(p)] = std::min(lowest[cell(p)], p.z);
+  std::vector<ImagePoint> out;
+  for (const ImagePoint& p : points)
+    if (p.z - lowest[cell(p)] > 0.5 + 0.25 * size) out.push_back(p);
+  if (out.size() * 100 < points.size()) out.clear();
+  return out;
+}
+
 /// Camera, framed so that the picture is full except for outliers, or at a given position.
 class Camera {
  public:
@@ -72,7 +98,11 @@ class Camera {
         forward_(std::sin(s.azimuth) * std::cos(s.elevation), std::cos(s.azimuth) * std::cos(s.elevation),
                  -std::sin(s.elevation)),
         up_(cross(right_, forward_)) {
-    s.eye ? stand(s, *s.eye) : frame(s, points);
+    const auto some = !s.eye && s.frame_on == FrameOn::standing ? standing(points) : std::vector<ImagePoint>();
+    if (s.eye)
+      stand(s, *s.eye);
+    else
+      some.empty() ? frame(s, points, 0.95) : frame(s, some, 0.8);  // with some of the ground around
   }
 
   /// Column and row from the upper left [px], and depth along the view [m]; NaN behind the camera.
@@ -103,8 +133,8 @@ class Camera {
     shift_ = {0.5 * s.width, 0.5 * s.height};
   }
 
-  void frame(const ImageSettings& s, std::span<const ImagePoint> points) {
-    constexpr double outliers = 0.001, margin = 0.95;
+  void frame(const ImageSettings& s, std::span<const ImagePoint> points, double margin) {
+    constexpr double outliers = 0.001;
     double radius = 1e-3;  // minimum, for a scene of one point [m]
     for (const Vec3& axis : {right_, forward_, up_}) {
       const auto along = [&](const ImagePoint& p) { return dot(axis, p.position()); };

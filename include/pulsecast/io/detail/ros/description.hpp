@@ -4,9 +4,7 @@
 #define PULSECAST_IO_DETAIL_ROS_DESCRIPTION_HPP
 
 #include <algorithm>
-#include <array>
 #include <span>
-#include <string_view>
 #include <tuple>
 #include <vector>
 

@@ -1,11 +1,14 @@
 // SPDX-FileCopyrightText: 2026 the pulsecast contributors
 // SPDX-License-Identifier: MIT
 
-// Meshes of foreign formats by pulsecast-import, beside this program: it has the libraries for them.
+// Meshes of foreign formats by pulsecast-import, a program that has the libraries for them.
 
 #include "foreign_meshes.hpp"
 
-#include <filesystem>
+#include <dlfcn.h>
+
+#include <cstdlib>
+#include <sstream>
 #include <system_error>
 
 #include <pulsecast/io/detail/mesh_file/file_maker.hpp>
@@ -17,16 +20,35 @@ namespace fs = std::filesystem;
 using namespace pulsecast;
 using io::detail::RawScene;
 
+std::vector<fs::path> programs_named(const std::string& name) {
+  std::error_code error;
+  std::vector<fs::path> folders{fs::read_symlink("/proc/self/exe", error).parent_path()};
+  Dl_info code{};  // of the Python module, or of this program
+  if (dladdr(reinterpret_cast<const void*>(&programs_named), &code) != 0) {
+    const fs::path object = fs::weakly_canonical(code.dli_fname, error);
+    folders.push_back(object.parent_path().parent_path().parent_path());  // in a build
+    for (fs::path above = object.parent_path(); above.has_relative_path(); above = above.parent_path())
+      folders.push_back(above / "bin");
+  }
+  const char* const path = std::getenv("PATH");
+  std::istringstream all(path == nullptr ? "" : path);
+  for (std::string folder; std::getline(all, folder, ':');)
+    if (fs::path(folder).is_absolute()) folders.emplace_back(folder);
+  std::vector<fs::path> found;
+  for (const fs::path& folder : folders)
+    if (fs::is_regular_file(folder / name, error)) found.push_back(folder / name);
+  return found;
+}
+
 namespace {
 
 RawScene imported(const fs::path& path, const io::MeshFileSettings& settings, bool city) {
-  std::error_code error;
-  const fs::path program = fs::read_symlink("/proc/self/exe", error).replace_filename("pulsecast-import");
-  if (!fs::exists(program, error))
+  const std::vector<fs::path> programs = programs_named("pulsecast-import");
+  if (programs.empty())
     throw FileError(path.string(), "",
-                    "needs the program " + program.string() +
-                        ", which does not exist: expected it beside pulsecast, from the same build (CMake target: "
-                        "pulsecast_import_program; Debian package: pulsecast)");
+                    "needs the program pulsecast-import, which is neither beside pulsecast nor in the PATH: expected "
+                    "that of the same version (CMake target: pulsecast_import_program; Debian package: pulsecast)");
+  const fs::path& program = programs.front();
   const ImportRequest request{.path = path.string(),
                               .city = city,
                               .materials = settings.materials.string(),

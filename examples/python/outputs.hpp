@@ -1,0 +1,15 @@
+// SPDX-FileCopyrightText: 2026 the pulsecast contributors
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <pybind11/pybind11.h>
+
+#include <pulsecast/helios/simulation.hpp>
+
+// Files of a run, by the functions and options of the survey program.
+
+/// Adds the method `run`, to arrays, files, or both.
+void bind_run_to_files(pybind11::class_<pulsecast::helios::Simulation>& simulation);
+
+/// Adds the method `write` to `Batch`.
+void bind_write(pybind11::module_& m);
