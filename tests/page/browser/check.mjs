@@ -2,11 +2,11 @@
 // SPDX-License-Identifier: MIT
 
 // Looks at pages in Chromium as people do: what is drawn, what is told of points, colours, histogram, timeline; and a page that is live.
-// Usage: node check.mjs CHROMIUM PROGRAM, where PROGRAM is pages.cpp. Needs nothing but Node.js. With `speed` behind it, it measures
-// how fast two million points turn instead.
+// Usage: node check.mjs CHROMIUM PROGRAM, where PROGRAM is pages.cpp. Needs nothing but Node.js. With the folder node_modules behind it that
+// has axe-core, it looks for barriers, too. With `speed` behind it, it measures how fast two million points turn instead.
 
 import { execFileSync, spawn } from 'node:child_process'
-import { mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs'
+import { existsSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs'
 import { tmpdir } from 'node:os'
 import { join } from 'node:path'
 
@@ -238,6 +238,163 @@ async function checkFile() {
   expect(requests.every(url => /^(file|data|blob):/.test(url)), `nobody is asked: ${requests}`)
 }
 
+/// Clicks a button, or what else has this id, where it is seen.
+async function press(id) {
+  const { x, y, width, height } = await page(`(e => {
+    e.scrollIntoView({ block: 'center' })
+    return e.getBoundingClientRect().toJSON()
+  })(document.getElementById('${id}'))`)
+  await mouse('mousePressed', x + width / 2, y + height / 2)
+  await mouse('mouseReleased', x + width / 2, y + height / 2)
+}
+const texts = id => page(`[...document.querySelectorAll('#${id} dd')].map(e => e.textContent)`)
+const set = (id, value) => page(`(e => {
+  e.value = '${value}'
+  e.dispatchEvent(new Event(e.matches('select') ? 'change' : 'input'))
+})(document.getElementById('${id}'))`)
+
+/// Two points that are picked where they are drawn, apart in the picture: { i, x, y, place }.
+const twoPoints = () => page(`(() => {
+  const { view, points } = pulsecast, { x, y, z } = points.arrays, found = []
+  for (let i = 0; found.length < 2; i += 97) {
+    const place = [x[i], y[i], z[i]], [sx, sy] = view.camera.project(view.relative(place)).map(v => v / view.ratio)
+    if (view.pick(sx * view.ratio, sy * view.ratio) === i && !found.some(f => Math.hypot(f.x - sx, f.y - sy) < 100))
+      found.push({ i, x: sx, y: sy, place })
+  }
+  return found
+})()`)
+
+/// Distances by clicks, and what ends them.
+async function checkMeasuring() {
+  await open(`file://${folder}/page.html`)
+  await rest()
+  const [a, b] = await twoPoints(), [dx, dy, dz] = b.place.map((v, k) => v - a.place[k])
+  await press('measure')
+  for (const { x, y } of [a, b]) await mouse('mousePressed', x, y), await mouse('mouseReleased', x, y)
+  const found = (await texts('lengths')).map(parseFloat)
+  for (const [k, expected] of [Math.hypot(dx, dy, dz), Math.hypot(dx, dy), dz].entries()) near(found[k], expected, 0.00051, 'a length')
+  expect(await page('pulsecast.state.selected') === -1, 'a click that measures reads no point')
+  await key('Escape')
+  expect(await page(`document.getElementById('distance').hidden && pulsecast.state.measured === null`), 'Escape ends measuring')
+  await page('document.activeElement.blur()')
+  await key('m')
+  await page(`pulsecast.view.camera.target = pulsecast.view.relative(${JSON.stringify(a.place)})`)  // in the middle
+  await key('Enter')
+  expect(await page('pulsecast.state.measured.length') === 1, 'Enter takes the point in the middle')
+  await press('done')
+  expect(await page(`document.getElementById('measure').getAttribute('aria-pressed')`) === 'false', 'the button is up again')
+}
+
+/// Slices hold the points within them, and look as they should.
+async function checkSlices() {
+  const inside = () => page(`(() => {
+    const { view, points } = pulsecast, { x, y, z } = points.arrays
+    return Array.from({ length: points.count }, (_, i) => view.inSlab([x[i], y[i], z[i]])).filter(Boolean).length
+  })()`)
+  await page('pulsecast.view.fit()')
+  await rest()
+  const all = await seen(), count = await inside()
+  await set('cut', 'level')
+  const thick = await inside()
+  await rest()
+  expect(thick > 0 && thick < 0.2 * count && (await seen()).share < 0.5 * all.share, `a level slice holds ${thick} of ${count}`)
+  await set('place', 900)
+  const height = await page(`parseFloat(document.getElementById('place_text').textContent)`)
+  const heights = await page(`(() => {
+    const { view, points } = pulsecast, { x, y, z } = points.arrays
+    return Array.from({ length: points.count }, (_, i) => i).filter(i => view.inSlab([x[i], y[i], z[i]])).map(i => z[i])
+  })()`)
+  const reach = await page('pulsecast.view.slab.reach')
+  expect(heights.length > 0 && heights.every(z => Math.abs(z - height) <= reach + 0.01), `heights are within ${reach} m of ${height} m`)
+  await set('cut', 'upright')
+  await set('azimuth', 90)
+  await set('place', 500)
+  await set('thickness', 300)
+  expect(await page('pulsecast.view.slab.plane[0]') === 1, 'an upright slice has an azimuth')
+  expect(await inside() > 0 && await inside() < 0.05 * count, 'an upright slice is thin')
+  await press('face')
+  near(await page('pulsecast.view.camera.elevation'), 0, 1e-9, 'the elevation of a look at it')
+  await set('cut', 'none')
+  expect(await inside() === count, 'all points are back')
+}
+
+/// Pictures are saved as PNG of the size of the view, or twice that, with the points on them.
+async function checkPictures() {
+  await tell('Browser.setDownloadBehavior', { behavior: 'allow', downloadPath: folder })
+  await page(`pulsecast.survey.name = 'A wood / hut', pulsecast.view.fit(), 0`)
+  const [width, height] = await page('[pulsecast.view.canvas.width, pulsecast.view.canvas.height]'), file = join(folder, 'A_wood_hut.png')
+  for (const [id, scale] of [['screen', 1], ['double', 2]]) {
+    rmSync(file, { force: true })
+    await press(id)
+    for (const end = Date.now() + 20000; !existsSync(file) && Date.now() < end;) await pause(25)
+    const bytes = readFileSync(file)
+    expect(bytes.readUInt32BE(16) === scale * width && bytes.readUInt32BE(20) === scale * height, `${id}: the size of the picture`)
+    expect(bytes.length > 20000, `${id}: the points are on it: ${bytes.length} bytes`)
+  }
+  expect(await page('pulsecast.view.canvas.width') === width, 'the view is as before')
+}
+
+/// One stop of Tab for all attributes; arrows choose. On a phone, the legend is seen without scrolling.
+async function checkChoice() {
+  await page(`document.querySelector('#attributes [tabindex="0"]').focus()`)
+  expect(await page(`document.querySelectorAll('#attributes [tabindex="0"]').length`) === 1, 'one stop')
+  const names = await page(`[...document.querySelectorAll('#attributes button')].map(b => b.dataset.name)`)
+  const first = await page('pulsecast.colouring.name')
+  for (const [press, name] of [['End', names.at(-1)], ['ArrowRight', names[0]], ['ArrowDown', names[1]], ['ArrowLeft', names[0]],
+                               ['ArrowUp', names.at(-1)], ['Home', names[0]]]) {
+    await key(press)
+    expect(await page(`pulsecast.colouring.name`) === name && await page('document.activeElement.dataset.name') === name, `${press} chooses ${name}`)
+  }
+  await key('Tab')
+  expect(await page(`document.activeElement.closest('#attributes') === null`), 'Tab leaves them')
+  await page(`pulsecast.choose('${first}')`)
+  await tell('Emulation.setDeviceMetricsOverride', { width: 390, height: 780, deviceScaleFactor: 2, mobile: true })
+  for (const [name, id] of [['z', 'amounts'], ['class', 'kinds']]) {
+    await page(`pulsecast.choose('${name}'), document.getElementById('panel').scrollTop = 0`)
+    expect(await page(`document.getElementById('${id}').getBoundingClientRect().bottom`) <= 780, `${id} are above the fold of a phone`)
+  }
+}
+
+/// No name covers a mark, another name, or the scale bar.
+async function checkNames() {
+  await tell('Emulation.setDeviceMetricsOverride', { width: 1100, height: 700, deviceScaleFactor: 1, mobile: false })
+  const boxes = await page(`(async () => {
+    const { view } = pulsecast, written = [], { prototype } = CanvasRenderingContext2D, fillText = prototype.fillText
+    view.setWays([[0, 0], [0.5, 0], [0.6, 0.1], [9, 9], [-9, 9]].map(([x, y], i) => ({ name: 'set-up ' + i, times: [0], places: [[x, y, 3]] })))
+    view.redraw()
+    while (view.waiting || view.done < 1) await new Promise(requestAnimationFrame)
+    prototype.fillText = function (text, x, y) { written.push([text, x, y, this.measureText(text).width]); fillText.call(this, text, x, y) }
+    view.drawFrame(performance.now())
+    prototype.fillText = fillText
+    const marks = view.ways.map(way => view.camera.project(view.relative(way.places[0])))
+    return { names: written.filter(([text]) => text.startsWith('set-up')), marks }
+  })()`)
+  const { names, marks } = boxes
+  expect(names.length >= 3, `${names.length} names are seen`)
+  names.forEach(([, x, y, width], i) => {
+    names.slice(0, i).forEach(([, x2, y2, width2]) => expect(Math.abs(y - y2) >= 11 || x + width <= x2 || x2 + width2 <= x, 'names are apart'))
+    for (const [mx, my] of marks) expect(!(mx > x && mx < x + width && my > y - 10 && my < y), 'names cover no mark')
+  })
+}
+
+/// axe-core finds no barrier on the page, light and dark, large and small, with each part open.
+async function checkBarriers(modules) {
+  const axe = readFileSync(join(modules, 'axe-core', 'axe.min.js'), 'utf8')
+  for (const scheme of ['light', 'dark'])
+    for (const [width, height] of [[1100, 700], [390, 780]]) {
+      await tell('Emulation.setDeviceMetricsOverride', { width, height, deviceScaleFactor: 1, mobile: false })
+      await tell('Emulation.setEmulatedMedia', { features: [{ name: 'prefers-color-scheme', value: scheme }] })
+      await open(`file://${folder}/page.html`)
+      await page(`pulsecast.select(0), pulsecast.choose('class'), document.querySelector('details').open = true`)
+      await press('measure')
+      await set('cut', 'upright')
+      await rest()
+      await page(`${axe}; 0`)
+      const found = await page(`axe.run().then(r => r.violations.map(v => v.id + ': ' + v.nodes.map(n => n.target).join(' ')))`)
+      expect(found.length === 0, `${scheme}, ${width} px: ${found.join('; ')}`)
+    }
+}
+
 /// A page without points can be handled like others.
 async function checkEmpty() {
   execFileSync(program, [folder, '0'])
@@ -271,31 +428,44 @@ async function checkLive(shots, stop) {
   expect(await ended === 0 && said.trim().endsWith(stop ? 'stopped' : 'complete'), `the program says how it ended: ${said}`)
 }
 
-/// Turns a cloud of two million points for some seconds: all of them in every frame, and as many as keep the pace; by hand and by WebGL.
+/// Processor time of the pages [s].
+async function processorTime() {
+  const its = session
+  session = undefined
+  const { processInfo } = await tell('SystemInfo.getProcessInfo')
+  session = its
+  return processInfo.filter(({ type }) => type === 'renderer').reduce((sum, { cpuTime }) => sum + cpuTime, 0)
+}
+
+/// Turns a cloud of two million points for some seconds: all of them in every frame, 700,000, and as many as keep the pace; by hand and by
+/// WebGL.
 async function measureSpeed() {
   execFileSync(program, [folder, '1600000'])
   for (const painter of ['plain', 'gl']) {
     await open(`file://${folder}/page.html?painter=${painter}`)
     await rest()
-    for (const adaptive of [false, true]) {
+    for (const points of ['all', 700000, 'as many as keep the pace']) {
+      await page(`pulsecast.view.adaptive = ${points !== 'all'}`)
+      await page(`pulsecast.view.keepPace = ${points > 0} ? () => {} : Object.getPrototypeOf(pulsecast.view).keepPace`)
+      if (points > 0) await page(`pulsecast.view.budget = ${points}`)
+      const before = await processorTime()
       const { count, frames, seconds, drawn } = await page(`(async () => {
         const { view, points } = pulsecast, frame = () => new Promise(requestAnimationFrame), draw = view.drawFrame
         let frames = 0, drawn = 0
-        view.adaptive = ${adaptive}
         view.drawFrame = function (time) { draw.call(this, time), ++frames, drawn += this.drawn }
         const turn = async milliseconds => {
           for (const end = performance.now() + milliseconds; performance.now() < end; await frame())
             view.camera.turn(0.02, 0), view.redraw(true)
         }
-        await turn(6000)  // until it keeps its pace
+        if (${points === 'as many as keep the pace'}) await turn(6000)  // until it keeps its pace
         frames = drawn = 0
         const begin = performance.now()
         await turn(4000)
         view.drawFrame = draw
         return { count: points.count, frames, drawn: drawn / frames, seconds: (performance.now() - begin) / 1000 }
       })()`)
-      console.log(`${painter}, ${adaptive ? 'as many as keep the pace' : 'all'}: ${(frames / seconds).toFixed(1)} frames/s of ` +
-        `${Math.round(drawn)} of ${count} points`)
+      const each = points === 'as many as keep the pace' ? '' : `, ${(1000 * (await processorTime() - before) / frames).toFixed(1)} ms of processor time each`
+      console.log(`${painter}, ${points}: ${(frames / seconds).toFixed(1)} frames/s of ${Math.round(drawn)} of ${count} points${each}`)
     }
   }
 }
@@ -310,6 +480,9 @@ try {
     await measureSpeed()
   } else {
     await checkFile()
+    for (const check of [checkMeasuring, checkSlices, checkPictures, checkChoice, checkNames]) await check()
+    if (what) await checkBarriers(what)
+    await tell('Emulation.setDeviceMetricsOverride', { width: 1100, height: 700, deviceScaleFactor: 1, mobile: false })
     await checkEmpty()
     await checkLive(8000, false)
     await checkLive(1000000, true)

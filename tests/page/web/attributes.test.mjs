@@ -11,8 +11,8 @@ import { blockOf, load, near } from './load.mjs'
 const scale = Array.from({ length: 256 }, (_, i) => [i, 0, 255 - i]), kinds = [[1, 1, 1], [2, 2, 2], [3, 3, 3]]
 const survey = { objects: { 2: 'house' }, legs: [{ name: 'north' }], colours: { viridis: scale, greys: scale, hues: scale, classes: scale, kinds, light: kinds } }
 globalThis.document = { getElementById: () => ({ textContent: JSON.stringify(survey) }) }
-const { Colouring, attributes, brief, description, points, power, whole, written } =
-  load('attributes.js', 'Colouring', 'attributes', 'brief', 'description', 'points', 'power', 'whole', 'written')
+const { Colouring, attributes, brief, description, points, power, survey: pageSurvey, whole, written } =
+  load('attributes.js', 'Colouring', 'attributes', 'brief', 'description', 'points', 'power', 'survey', 'whole', 'written')
 
 /// Has the page's points be these: columns by name.
 function take(columns, steps = {}) {
@@ -93,6 +93,25 @@ test('every colour is exact in the arrays of the page', () => {
   const all = [0xffffff, 0xfffffe, 0xff00fe, 0x010203]
   take({ colour: all })
   assert.deepEqual([...points.arrays.colour.subarray(0, 4)], all)
+})
+
+test('the class is the first choice where it differs and most heights are alike', () => {
+  const heights = Array.from({ length: 1000 }, (_, i) => i < 700 ? 0.001 * i : i), kinds = heights.map((_, i) => i < 700 ? 2 : 5)
+  take({ z: heights, class: kinds })
+  assert.equal(Colouring.first(), 'class')
+  take({ z: heights, class: kinds.map(() => 2) })
+  assert.equal(Colouring.first(), 'z')
+  take({ z: heights.map((_, i) => i), class: kinds })
+  assert.equal(Colouring.first(), 'z')
+})
+
+test('the legs are set-ups where none moves', () => {
+  const { legs } = survey, place = [0, 0, 0]
+  for (const [places, expected] of [[[[place], [place]], 'Set-up'], [[[place], [place, place]], 'Leg'], [[[place]], 'Leg']]) {
+    pageSurvey.legs = places.map(places => ({ places }))
+    assert.equal(attributes.leg.label, expected)
+  }
+  pageSurvey.legs = legs
 })
 
 test('bars count all usual values of an amount, and kinds are told by their number', () => {

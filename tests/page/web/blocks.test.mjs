@@ -25,7 +25,7 @@ function block(count, columns, planes) {
 const column = (name, more) => ({ name, kind: 'linear', offset: 0, step: 1, differences: false, planes: 1, ...more })
 
 test('the scripts of the page are one script, in strict mode', () => {
-  assert.deepEqual(scripts, ['points.js', 'painters.js', 'view.js', 'attributes.js', 'panel.js'])
+  assert.deepEqual(scripts, ['points.js', 'painters.js', 'view.js', 'attributes.js', 'marks.js', 'tools.js', 'panel.js'])
   const all = source('panel.js')
   new vm.Script(all)
   assert.throws(() => new vm.Script(`${all}\nwith ({}) ;`), /strict mode/i)

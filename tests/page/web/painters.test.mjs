@@ -27,11 +27,11 @@ function draw({ painter, camera }, places, colours, more = {}) {
   painter.takePlaces(chunk, Float32Array.from(places.flat()))
   painter.takeColours(chunk, Uint8Array.from(colours.flat()))
   painter.draw(chunk, 0, places.length, { matrix: camera.matrix(), near: camera.near, size: 0, least: 1, most: 1, now: Infinity, trail: 0,
-                                          fresh: [0, 0, 1], ...more })
+                                          fresh: [0, 0, 1], slab: { plane: [0, 0, 0, 0], reach: 1 }, many: true, ...more })
 }
 
-const colourAt = ({ painter }, x, y) => [...new Uint8Array(painter.colours.buffer, 4 * ((y | 0) * width + (x | 0)), 4)]
-const drawn = ({ painter }) => painter.depths.filter(depth => depth < Infinity).length
+const colourAt = ({ painter }, x, y) => [...new Uint8Array(painter.grown().colours.buffer, 4 * ((y | 0) * width + (x | 0)), 4)]
+const drawn = ({ painter }) => painter.grown().depths.filter(depth => depth < Infinity).length
 
 test('a colour is packed in the bytes of an image: red, green, blue, opaque', () => {
   const bytes = colour => [...new Uint8Array(Uint32Array.of(packed(colour)).buffer)]
@@ -52,7 +52,7 @@ test('a point is where the camera projects it, in its depth', () => {
     assert.equal(drawn(scene), within ? 1 : 0)
     if (!within) continue
     assert.deepEqual(colourAt(scene, x, y), red)
-    near(scene.painter.depths[(y | 0) * width + (x | 0)], depth, 1e-4)
+    near(scene.painter.drawn.depths[(y | 0) * width + (x | 0)], depth, 1e-4)
   }
 })
 
@@ -73,9 +73,9 @@ test('what is later, clear or behind the camera is not drawn', () => {
   }
 })
 
-test('points are squares of the wanted size, cut at the edge', () => {
+test('points are squares of the wanted size, large ones round, cut at the edge', () => {
   const { camera } = set(), middle = camera.project([0, 0, 0]), depth = middle[2]
-  for (const [size, least, most, expected] of [[0, 3, 9, 9], [5 * depth, 1, 9, 25], [50 * depth, 1, 7, 49]]) {
+  for (const [size, least, most, expected] of [[0, 3, 9, 9], [3 * depth, 1, 9, 9], [3 * depth, 2, 9, 9], [5 * depth, 1, 9, 21], [50 * depth, 1, 7, 37]]) {
     const scene = set()
     draw(scene, [[0, 0, 0, 0]], [red], { size, least, most })
     assert.equal(drawn(scene), expected)
@@ -83,6 +83,31 @@ test('points are squares of the wanted size, cut at the edge', () => {
   const scene = set()
   draw(scene, [[-3, 0, 0, 0], [5.4, 0, 0, 0]], [red, red], { least: 7, most: 7 })
   assert.ok(drawn(scene) >= 49 && drawn(scene) < 98, `${drawn(scene)} pixels`)
+})
+
+test('points grown at once are the squares of each, the nearer one before the other', () => {
+  const any = random(8)
+  for (const [size, many] of [[2, true], [3, true], [4, true], [6, true], [2, false], [3, false]]) {
+    const scene = set(), expected = new Float32Array(width * height).fill(Infinity)
+    const places = Array.from({ length: 40 }, () => [4 * any() - 2, 4 * any() - 2, 3 * any() - 1.5, 0])
+    draw(scene, places, places.map(() => red), { least: size, most: size, many })
+    assert.equal(scene.painter.growth > 0, many)
+    for (const place of places) {
+      const [x, y, depth] = scene.camera.project(place), [left, top] = [x, y].map(v => Math.max(0, v - (size - 1) / 2 | 0))
+      for (let row = top; row < Math.min(height, top + size); ++row)
+        for (let column = left; column < Math.min(width, left + size); ++column)
+          expected[row * width + column] = Math.min(expected[row * width + column], depth)
+    }
+    scene.painter.grown().depths.forEach((depth, at) => depth === expected[at] || near(depth, expected[at], 1e-4, `depth of size ${size} at ${at}`))
+  }
+})
+
+test('what is outside the slice is not drawn', () => {
+  for (const [y, expected] of [[0.9, 0], [1.1, 1], [2.9, 1], [3.1, 0]]) {
+    const scene = set()
+    draw(scene, [[0, y, 0, 0]], [red], { slab: { plane: [0, 1, 0, 2], reach: 1 } })
+    assert.equal(drawn(scene), expected)
+  }
 })
 
 test('what is new has a trace of the colour of what is new', () => {
@@ -96,10 +121,11 @@ test('what is new has a trace of the colour of what is new', () => {
 test('shading darkens what lies behind a neighbour on any side, and leaves a plane as it is', () => {
   const look = { shading: true, sky: [[0, 0, 1], [0, 0, 1]] }, scene = set(), { painter } = scene
   const pixel = (x, y) => painter.pixels[y * width + x], white = packed([1, 1, 1])
-  painter.depths.fill(10)
-  painter.colours.fill(white)
-  painter.depths[20 * width + 30] = 8
-  painter.depths[30 * width + 30] = Infinity
+  const { depths, colours } = painter.drawn
+  depths.fill(10)
+  colours.fill(white)
+  depths[20 * width + 30] = 8
+  depths[30 * width + 30] = Infinity
   painter.show(look)
   for (const [x, y] of [[30, 20], [32, 20], [5, 5], [0, 0], [width - 1, height - 1]]) assert.equal(pixel(x, y), white)
   for (const [x, y] of [[29, 20], [31, 20], [30, 19], [30, 21]]) {

@@ -15,7 +15,7 @@ function viewOf(places, more = {}) {
   const points = new Points()
   points.append(blockOf(places))
   return Object.assign(Object.create(View.prototype), { points, camera: new Camera(), now: Infinity, start: 0, ratio: 1, ways: [],
-    origin: [0, 0, 0], wake() {}, ...more })
+    origin: [0, 0, 0], slab: { plane: [0, 0, 0, 0], reach: 1 }, wake() {}, ...more })
 }
 
 const cloud = (draw, n) => Array.from({ length: n }, () => [40 * draw() - 20, 40 * draw() - 20, 10 * draw()])
@@ -49,6 +49,17 @@ test('the foremost point under the pointer is picked, unless it is hidden or lat
   view.camera.azimuth = Math.PI  // all are behind
   assert.equal(view.pick(400, 300), -1)
   assert.equal(Object.assign(view, { origin: null }).pick(400, 300), -1)
+})
+
+test('a slice hides the points and chunks outside it', () => {
+  const view = viewOf([[0, 30, 0], [0, 10, 0], [0, 20, 0]], { origin: [0, 5, 0], slab: { plane: [0, 1, 0, 15], reach: 1 } })
+  Object.assign(view.camera, { target: [0, 0, 0], azimuth: 0, elevation: 0, distance: 20, width: 800, height: 600 })
+  assert.equal(view.pick(400, 300), 2)
+  const [chunk] = view.points.chunks, matrix = view.camera.matrix()
+  for (const [middle, expected] of [[3.9, false], [4.1, true], [25.9, true], [26.1, false]]) {
+    view.slab.plane[3] = middle
+    assert.equal(view.inSight(chunk, matrix), expected)
+  }
 })
 
 test('every point of a sparse cloud can be picked where it is projected', () => {

@@ -31,7 +31,8 @@ const attributes = {
   scan_angle: { label: 'Scan angle', unit: '°' },
   width: { label: 'Echo width', unit: 'ns' },
   time: { label: 'Time', unit: 's' },
-  leg: { label: 'Leg', list: true, name: v => survey.legs[v]?.name ?? String(v) },
+  leg: { get label() { return survey.legs.length > 1 && survey.legs.every(leg => leg.places?.length === 1) ? 'Set-up' : 'Leg' }, list: true,
+         name: v => survey.legs[v]?.name ?? String(v) },
   channel: { label: 'Channel', list: true },
   kind: { label: 'Light', list: true, colour: v => survey.colours.light[v], name: v => kindNames[v] ?? String(v) },
 }
@@ -85,11 +86,10 @@ function description(i) {
 
 /// Attribute that colours the points, its histogram, and the values shown.
 class Colouring {
-  constructor() {
-    this.name = 'z'
+  constructor(name = 'z') {
     this.hidden = new Set()  // categories
     this.shown = null        // [least, greatest] of a numeric attribute, as plotted
-    this.take('z')
+    this.take(name)
   }
 
   get attribute() { return attributes[this.name] }
@@ -122,6 +122,12 @@ class Colouring {
       const bin = Math.floor((this.plotted(values[i]) - ends[0]) * per)
       if (bin >= 0 && bin < this.bins.length) ++this.bins[bin]
     }
+  }
+
+  /// First choice: the class where it differs and more than half of the heights are in one bar, as on a tripod that mostly sees the ground.
+  static first() {
+    const { bins } = new Colouring('z'), { kinds } = new Colouring('class')
+    return kinds.length > 1 && 2 * Math.max(...bins) > points.count ? 'class' : 'z'
   }
 
   hides(value) {

@@ -121,7 +121,7 @@ class GlPainter {
     gl.bufferData(gl.ARRAY_BUFFER, colours, gl.STATIC_DRAW)
   }
 
-  draw(chunk, first, end, { matrix, size, least, most, now, trail, fresh }) {
+  draw(chunk, first, end, { matrix, size, least, most, now, trail, fresh, slab }) {
     const { gl } = this, { program, places } = this.pointProgram
     gl.bindFramebuffer(gl.FRAMEBUFFER, this.frame)
     gl.enable(gl.DEPTH_TEST)
@@ -130,6 +130,8 @@ class GlPainter {
     gl.uniform3f(places.size, size, least, most)
     gl.uniform2f(places.now, Math.min(now, 3e38), trail)
     gl.uniform3fv(places.fresh, fresh)
+    gl.uniform4fv(places.plane, slab.plane)
+    gl.uniform1f(places.reach, slab.reach)
     gl.bindVertexArray(chunk.array)
     gl.drawArrays(gl.POINTS, first, end - first)
   }
@@ -176,44 +178,54 @@ class GlPainter {
   }
 }
 
-/// Painter without WebGL: a depth and a colour per pixel.
+/// Painter without WebGL: a depth and a colour per pixel. If there are many points, they are drawn `growth` pixels smaller than they are, most of
+/// them as one pixel; `grown` makes up for it, for all at once.
 class PlainPainter {
   constructor(canvas) {
     this.canvas = canvas
     this.context = canvas.getContext('2d', { alpha: false, willReadFrequently: true })
     this.shades = Uint32Array.from({ length: 256 }, (_, i) => Math.round(256 * Math.exp(-12 * 0.08 * i / 255)))
+    this.growth = 0
+    this.discs = []
   }
 
   busy() { return false }
 
   resize(width, height) {
     this.width = width, this.height = height
-    this.depths = new Float32Array(width * height)
-    this.colours = new Uint32Array(width * height)
+    for (const layer of ['drawn', 'wide']) this[layer] = { depths: new Float32Array(width * height), colours: new Uint32Array(width * height) }
     this.image = this.context.createImageData(width, height)
     this.pixels = new Uint32Array(this.image.data.buffer)
   }
 
-  clear() { this.depths.fill(Infinity) }
+  clear() { this.drawn.depths.fill(Infinity) }
 
   takePlaces(chunk, places) { chunk.places = places }
   takeColours(chunk, colours) { chunk.colours = new Uint32Array(colours.buffer) }
 
-  draw(chunk, first, end, { matrix, near, size, least, most, now, trail, fresh }) {
-    const { width, height, depths, colours } = this, { places, colours: tints } = chunk
-    const halfWidth = width / 2, halfHeight = height / 2
+  /// Pixels left out at either end of each row of a point of a size: none of a small one, the corners of a large one.
+  disc(size) {
+    const inset = row => size < 4 ? 0 : Math.round((size - Math.sqrt(size ** 2 - (2 * row + 1 - size) ** 2)) / 2)
+    return this.discs[size] ??= Uint8Array.from({ length: size }, (_, row) => inset(row))
+  }
+
+  draw(chunk, first, end, { matrix, near, size, least, most, now, trail, fresh, slab, many }) {
+    const { width, height } = this, { depths, colours } = this.drawn, { places, colours: tints } = chunk
+    const growth = this.growth = many ? Math.max(0, Math.round(least) - 1) : 0
+    const small = least < growth + 1.5 ? size / (growth + 1.5) : Infinity  // points that are deeper are one pixel
     const [a0, a1, , a3, b0, b1, , b3, c0, c1, , c3, d0, d1, , d3] = matrix
-    const newest = fresh.map(v => 255 * v)
+    const across = [a0 + a3, b0 + b3, c0 + c3, d0 + d3].map(v => v * width / 2), down = [a3 - a1, b3 - b1, c3 - c1, d3 - d1].map(v => v * height / 2)
+    const [ax, bx, cx, dx] = across, [ay, by, cy, dy] = down, shift = growth / 2
+    const newest = fresh.map(v => 255 * v), { plane: [nx, ny, nz, middle], reach } = slab, sliced = slab.plane.some(Boolean)
     for (let i = first, o = 4 * first; i < end; ++i, o += 4) {
       const x = places[o], y = places[o + 1], z = places[o + 2], time = places[o + 3]
       const depth = a3 * x + b3 * y + c3 * z + d3
-      if (depth < near || time > now) continue
-      const per = 1 / depth, sx = halfWidth + halfWidth * per * (a0 * x + b0 * y + c0 * z + d0)
-      const sy = halfHeight - halfHeight * per * (a1 * x + b1 * y + c1 * z + d1)
-      if (!(sx >= 0 && sx < width && sy >= 0 && sy < height)) continue
-      const wide = size * per, square = (wide < least ? least : wide > most ? most : wide) + 0.5 | 0
-      if (square <= 1) {
-        const at = (sy | 0) * width + (sx | 0)
+      if (depth < near || time > now || (sliced && Math.abs(nx * x + ny * y + nz * z - middle) > reach)) continue
+      const per = 1 / depth, sx = per * (ax * x + bx * y + cx * z + dx), sy = per * (ay * x + by * y + cy * z + dy)
+      const column = (sx + 1 | 0) - 1, row = (sy + 1 | 0) - 1
+      if (column >>> 0 >= width || row >>> 0 >= height) continue
+      if (depth > small) {
+        const at = growth === 0 ? row * width + column : Math.max(0, sy - shift | 0) * width + Math.max(0, sx - shift | 0)
         if (!(depth < depths[at])) continue
         let tint = tints[i]
         if (tint >>> 24 === 0) continue
@@ -224,16 +236,19 @@ class PlainPainter {
       let tint = tints[i]
       if (tint >>> 24 === 0) continue
       if (trail > 0 && now - time < trail) tint = mixed(tint, newest, 0.85 * (1 - (now - time) / trail))
-      const left = Math.max(0, sx - square / 2 + 0.5 | 0), right = Math.min(width, left + square)
-      const top = Math.max(0, sy - square / 2 + 0.5 | 0), bottom = Math.min(height, top + square)
-      for (let row = top; row < bottom; ++row)
-        for (let at = row * width + left, stop = row * width + right; at < stop; ++at)
+      const full = Math.round(Math.min(Math.max(size * per, least), most)), square = full - growth, disc = this.disc(square)
+      const left = Math.max(0, sx - full / 2 + 0.5 | 0), right = Math.min(width, left + square)
+      const top = Math.max(0, sy - full / 2 + 0.5 | 0), bottom = Math.min(height, top + square)
+      for (let row = top; row < bottom; ++row) {
+        const inset = disc[row - top]
+        for (let at = row * width + left + inset, stop = row * width + right - inset; at < stop; ++at)
           if (depth < depths[at]) depths[at] = depth, colours[at] = tint
+      }
     }
   }
 
   drawWays(view, { matrix, near, now }, colour) {
-    const { width, height, depths, colours } = this, tint = packed(colour), until = view.start + now
+    const { width, height } = this, { depths, colours } = this.drawn, tint = packed(colour), until = view.start + now
     const m = matrix
     const project = place => {
       const [x, y, z] = view.relative(place), [px, py, , depth] = [0, 1, 2, 3].map(k => m[k] * x + m[4 + k] * y + m[8 + k] * z + m[12 + k])
@@ -257,9 +272,22 @@ class PlainPainter {
     }
   }
 
+  /// What is drawn, with each pixel that many pixels wider and taller: nearer ones cover others.
+  grown() {
+    let from = this.drawn
+    for (let size = 1, step; size <= this.growth; size += step) {
+      step = Math.min(size, this.growth + 1 - size)
+      for (const [shift, line] of [[step, this.width], [step * this.width, from.depths.length]]) {
+        spread(from, this.wide, shift, line)
+        from = this.wide
+      }
+    }
+    return from
+  }
+
   /// Same shading as `screenFragment` of the WebGL painter.
   show({ shading, sky }) {
-    const { width, height, depths, colours, pixels, shades } = this
+    const { width, height, pixels, shades } = this, { depths, colours } = this.grown()
     for (let y = 0, at = 0; y < height; ++y) {
       const far = packed(sky[0].map((v, k) => v + (sky[1][k] - v) * y / height))
       const up = y > 0 ? width : 0, down = y + 1 < height ? width : 0
@@ -289,6 +317,16 @@ class PlainPainter {
     }
     this.context.putImageData(this.image, 0, 0)
   }
+}
+
+/// Puts in each place what is `shift` places before it in its line, if that is nearer. From the last place on, so that it may be in itself.
+function spread(from, to, shift, line) {
+  const { depths, colours } = from, { depths: farther, colours: tints } = to
+  for (let begin = 0; begin < depths.length; begin += line)
+    for (let at = begin + line - 1; at >= begin; --at) {
+      const source = at - shift >= begin && depths[at - shift] < depths[at] ? at - shift : at
+      farther[at] = depths[source], tints[at] = colours[source]
+    }
 }
 
 /// Red, green and blue, from 0 to 1, as one word of an image. Source: HTML Standard, ImageData, on little-endian machines.

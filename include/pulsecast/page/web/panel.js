@@ -12,7 +12,8 @@ const element = (tag, className, text) => {
 const rgb = colour => colour.match(/[\da-f]{2}/gi).map(v => parseInt(v, 16) / 255)
 const theme = {}
 
-const state = { view: null, selected: -1, playing: false, live: survey.live, touched: false, begin: 0, end: 1 }
+const state = { view: null, selected: -1, measured: null, extent: null, playing: false, live: survey.live, touched: false, chosen: false, begin: 0,
+                end: 1 }
 const colouring = new Colouring()
 let view
 
@@ -39,8 +40,29 @@ function showTitle() {
 
 function choose(name) {
   colouring.take(name)
-  for (const button of byId('attributes').children) button.setAttribute('aria-checked', String(button.dataset.name === name))
+  for (const button of byId('attributes').children) showChosen(button)
   recolour()
+}
+
+/// The chosen one of the attributes is the only one that Tab reaches.
+function showChosen(button) {
+  const chosen = button.dataset.name === colouring.name
+  button.setAttribute('aria-checked', String(chosen))
+  button.tabIndex = chosen ? 0 : -1
+}
+
+/// Arrow keys, Home and End choose an attribute. Source: WAI-ARIA Authoring Practices, radio group.
+function takeChoice() {
+  const list = byId('attributes')
+  list.onkeydown = event => {
+    const buttons = [...list.children], at = buttons.indexOf(document.activeElement), last = buttons.length - 1
+    const next = { ArrowRight: at + 1, ArrowDown: at + 1, ArrowLeft: at - 1, ArrowUp: at - 1, Home: 0, End: last }[event.key]
+    if (next === undefined || event.altKey || event.ctrlKey || event.metaKey) return
+    event.preventDefault()
+    const button = buttons[(next + buttons.length) % buttons.length]
+    button.focus()
+    button.click()
+  }
 }
 
 function recolour() {
@@ -59,8 +81,8 @@ function showAttributes() {
     const button = element('button', '', label)
     button.dataset.name = name
     button.setAttribute('role', 'radio')
-    button.setAttribute('aria-checked', String(name === colouring.name))
-    button.onclick = () => choose(name)
+    showChosen(button)
+    button.onclick = () => { state.chosen = true, choose(name) }
     byId('attributes').append(button)
   }
 }
@@ -104,116 +126,9 @@ function select(i) {
   const list = byId('point')
   list.replaceChildren()
   byId('pick').hidden = i < 0
-  byId('hint').hidden = i >= 0
+  byId('hint').hidden = i >= 0 || !!state.measured
   if (i >= 0) for (const [label, text] of description(i)) list.append(element('dt', '', label), element('dd', '', text))
   view.redraw()
-}
-
-// ----------------------------------------------------------------------------------------------- the marks in the view
-
-/// Position of a leg's instrument at a time.
-function placeAt(way, time) {
-  const { times, places } = way
-  let k = 0
-  while (k + 2 < times.length && times[k + 1] <= time) ++k
-  if (places.length === 1) return places[0]
-  const t = Math.max(0, Math.min(1, (time - times[k]) / Math.max(times[k + 1] - times[k], 1e-12)))
-  return places[k].map((v, j) => v + t * (places[k + 1][j] - v))
-}
-
-function drawMarks() {
-  const { camera, ratio } = view, marks = byId('marks')
-  const c = view.painter.context ?? marks.getContext('2d')  // canvas of the painter without WebGL, else a canvas on top
-  if (c.canvas === marks) {
-    if (marks.width !== camera.width || marks.height !== camera.height) marks.width = camera.width, marks.height = camera.height
-    c.clearRect(0, 0, marks.width, marks.height)
-  }
-  if (!view.origin) return
-  c.font = `${12 * ratio}px system-ui, sans-serif`
-  c.lineJoin = 'round'
-  const { ink, paper } = theme
-  const label = (text, x, y) => {
-    c.lineWidth = 3 * ratio
-    c.strokeStyle = paper
-    c.strokeText(text, x, y)
-    c.fillStyle = ink
-    c.fillText(text, x, y)
-  }
-  drawSetUps(c, label)
-  if (view.now < Infinity) drawInstrument(c)
-  if (state.selected >= 0) drawSelected(c)
-  drawScaleBar(c, label, ink)
-}
-
-/// Position in the picture and depth of a place in the world.
-const inPicture = place => view.camera.project(view.relative(place))
-
-/// The set-ups until now.
-function drawSetUps(c, label) {
-  const { camera, ratio } = view, until = view.start + view.now
-  const setUps = view.ways.filter(way => way.places.length === 1)
-  for (const way of setUps) {
-    if (way.times[0] > until) continue
-    const [x, y, depth] = inPicture(way.places[0])
-    if (depth < camera.near) continue
-    const s = 6 * ratio
-    c.beginPath()
-    c.moveTo(x, y - s), c.lineTo(x + s, y), c.lineTo(x, y + s), c.lineTo(x - s, y), c.closePath()
-    c.fillStyle = theme.accent
-    c.fill()
-    c.lineWidth = 1.5 * ratio
-    c.strokeStyle = theme.paper
-    c.stroke()
-    if (setUps.length <= 60) label(way.name, x + 9 * ratio, y + 4 * ratio)
-  }
-}
-
-/// The instrument at this moment.
-function drawInstrument(c) {
-  const { camera, ratio } = view, until = view.start + view.now
-  const way = view.ways.findLast(w => w.times[0] <= until)
-  if (!way || way.places.length < 2) return
-  const [x, y, depth] = inPicture(placeAt(way, until))
-  if (depth <= camera.near) return
-  c.beginPath(), c.arc(x, y, 6 * ratio, 0, 7), c.fillStyle = theme.accent, c.fill()
-  c.lineWidth = 2 * ratio, c.strokeStyle = theme.paper, c.stroke()
-}
-
-/// The selected point and its beam.
-function drawSelected(c) {
-  const { camera, ratio } = view
-  const { x, y, z, to_x, to_y, to_z } = points.arrays, i = state.selected
-  const [px, py, depth] = inPicture([x[i], y[i], z[i]]), [ix, iy, away] = inPicture([x[i] + to_x[i], y[i] + to_y[i], z[i] + to_z[i]])
-  if (depth <= camera.near) return
-  c.strokeStyle = theme.accent
-  if (away > camera.near) {
-    c.lineWidth = 1.5 * ratio, c.globalAlpha = 0.7
-    c.beginPath(), c.moveTo(ix, iy), c.lineTo(px, py), c.stroke()
-    c.globalAlpha = 1
-  }
-  for (const [colour, width] of [[theme.paper, 5], [theme.accent, 2.5]]) {
-    c.lineWidth = width * ratio, c.strokeStyle = colour
-    c.beginPath(), c.arc(px, py, 9 * ratio, 0, 7), c.stroke()
-  }
-}
-
-/// Scale bar for the target's depth, and north arrow.
-function drawScaleBar(c, label, ink) {
-  const { camera, ratio } = view, metre = camera.scale / camera.distance, room = 140 * ratio / metre
-  const power = 10 ** Math.floor(Math.log10(room)), length = [5, 2, 1].find(n => n * power <= room) * power
-  const left = 20 * ratio, y = camera.height - 20 * ratio, width = length * metre
-  c.strokeStyle = c.fillStyle = ink
-  c.lineWidth = 1.5 * ratio
-  c.beginPath(), c.moveTo(left, y - 5 * ratio), c.lineTo(left, y)
-  c.lineTo(left + width, y), c.lineTo(left + width, y - 5 * ratio), c.stroke()
-  label(length >= 1000 ? `${length / 1000} km` : length >= 1 ? `${length} m` : length >= 0.01 ? `${Math.round(length * 100)} cm`
-        : `${+(length * 1000).toPrecision(1)} mm`, left + 6 * ratio, y - 7 * ratio)
-  const [r, u, f] = camera.axes(), x0 = left + 24 * ratio, y0 = y - 48 * ratio, s = 17 * ratio
-  const [nx, ny] = [r[1] * s, -u[1] * s]
-  c.lineWidth = 2 * ratio
-  c.strokeStyle = theme.accent
-  c.beginPath(), c.moveTo(x0 - nx * 0.6, y0 - ny * 0.6), c.lineTo(x0 + nx, y0 + ny), c.stroke()
-  label('N', x0 + nx * 1.45 - 4 * ratio, y0 + ny * 1.45 + 4 * ratio)
 }
 
 // -------------------------------------------------------------------------------------------------------- the timeline
@@ -306,7 +221,7 @@ function takePointers() {
   canvas.onpointerup = canvas.onpointercancel = event => {
     const was = held.delete(event.pointerId)
     if (was && moved < 4 && event.type === 'pointerup' && event.button === 0)
-      select(view.pick(event.offsetX * view.ratio, event.offsetY * view.ratio))
+      clickAt(event.offsetX * view.ratio, event.offsetY * view.ratio)
   }
   canvas.oncontextmenu = event => event.preventDefault()
   canvas.ondblclick = event => {
@@ -338,7 +253,9 @@ function takeKeys() {
   }
   const others = {
     ' ': () => play(),
-    Escape: () => { select(-1), colouring.shown = null, recolour() },
+    Escape: () => { state.measured ? measure(false) : select(-1), colouring.shown = null, recolour() },
+    Enter: () => clickAt(view.camera.width / 2, view.camera.height / 2),
+    m: () => measure(),
     e: () => { view.shading = !view.shading, view.redraw() },
     '[': () => { view.pointSize = Math.max(0.5, view.pointSize / 1.2), view.redraw() },
     ']': () => { view.pointSize = Math.min(6, view.pointSize * 1.2), view.redraw() },
@@ -396,10 +313,13 @@ function grown(first) {
     state.end = Math.max(time[points.count - 1], survey.legs.at(-1)?.times?.at(-1) ?? 0, view.start + 1e-9)
     if (!view.origin || (state.live && !state.touched)) view.fit()
   }
-  colouring.count()
+  const choice = state.chosen ? colouring.name : Colouring.first()
+  if (colouring.name !== choice) colouring.take(choice), view.recolour()
+  else colouring.count()
   if (state.live && !colouring.attribute.list) for (const chunk of points.chunks) chunk.coloursAreOld = true  // the scale has changed
   showTitle()
   showAttributes()
+  for (const button of byId('attributes').children) showChosen(button)
   showHistogram()
   if (points.count > 0) showTime(), showDensity()
   view.redraw(first)
@@ -438,6 +358,7 @@ async function follow() {
     if (String(status.run) !== run) {
       points.clear()
       select(-1)
+      measure(false)
       run = String(status.run)
     }
     survey.echoes = status.echoes
@@ -475,6 +396,8 @@ async function begin() {
   takeKeys()
   takeHistogram()
   takeButtons()
+  takeChoice()
+  takeTools()
   matchMedia('(prefers-color-scheme: dark)').onchange = takeTheme
   window.onresize = () => { showHistogram(), points.count > 0 && showDensity() }
   const text = byId('points').textContent
@@ -486,7 +409,7 @@ async function begin() {
   grown()
   if (view.painter.context) byId('marks').hidden = true
   byId('wait').hidden = true
-  window.pulsecast = { survey, points, view, colouring, state, attributes, choose, select, goTo, play, description }
+  window.pulsecast = { survey, points, view, colouring, state, attributes, choose, select, goTo, play, description, savePicture }
   if (survey.live) await follow()
 }
 

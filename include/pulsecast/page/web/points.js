@@ -47,7 +47,7 @@ async function readBlock(bytes) {
 }
 
 /// All points, in pulse order, an array for each attribute. They are drawn in chunks, each in random order, so that the first part of each
-/// chunk is a uniform sample.
+/// chunk is a uniform sample; after the first eighth, each next 1024 points are in pulse order.
 class Points {
   static chunkSize = 65536
 
@@ -64,6 +64,8 @@ class Points {
       const k = Math.floor(seed / 4294967296 * (i + 1)), card = pack[i]
       pack[i] = pack[k], pack[k] = card
     }
+    for (let begin = Points.chunkSize / 8; begin < Points.chunkSize; begin += 1024)
+      pack.subarray(begin, begin + 1024).sort()  // neighbours in time are neighbours in the picture, whose memory is at hand
     this.pack = pack
   }
 

@@ -84,13 +84,14 @@ class View {
     this.spacing = 0.1  // distance between points [m]
     this.shading = true
     this.adaptive = true
-    this.rate = 30
+    this.rate = 45
     this.budget = 500000  // points per frame
     this.done = 0         // share of the points drawn
     this.drawn = 0        // number of points drawn
     this.start = 0        // start of the survey's time [s]
     this.origin = null    // origin of the drawn coordinates, in the world [m]
     this.ways = []
+    this.slab = { plane: [0, 0, 0, 0], reach: 1 }  // what is drawn: normal and distance from `origin` of its middle, half thickness; this is all [m]
     this.afterFrame = () => {}
     this.colourOf = (chunk, order, out) => out.fill(255)
     this.lastFrame = 0
@@ -105,12 +106,27 @@ class View {
   resize() {
     const { canvas, camera } = this, ratio = Math.min(window.devicePixelRatio || 1, 2)
     const width = Math.max(1, Math.round(canvas.clientWidth * ratio)), height = Math.max(1, Math.round(canvas.clientHeight * ratio))
-    if (camera.width === width && camera.height === height) return
+    if (camera.width !== width || camera.height !== height) this.resizeTo(width, height, ratio)
+  }
+
+  resizeTo(width, height, ratio) {
+    const { canvas, camera } = this
     canvas.width = camera.width = width
     canvas.height = camera.height = height
     this.ratio = ratio
     this.painter.resize(width, height)
     this.redraw()
+  }
+
+  /// Draws all points at `scale` times the resolution of the screen, shows that to `take`, and returns to the screen.
+  picture(scale, take) {
+    const { camera: { width, height }, ratio, adaptive } = this
+    this.resizeTo(width * scale, height * scale, ratio * scale)
+    Object.assign(this, { adaptive: false, movedAt: -Infinity })
+    this.drawFrame(performance.now())
+    take()
+    this.adaptive = adaptive
+    this.resizeTo(width, height, ratio)
   }
 
   /// Frames all points but outliers, with trajectories near them. The first call sets the origin to their centre.
@@ -160,7 +176,17 @@ class View {
     })
   }
 
+  /// Whether the slice holds a place in the world.
+  inSlab([x, y, z]) {
+    const { plane: [nx, ny, nz, middle], reach } = this.slab, [ox, oy, oz] = this.origin
+    return Math.abs(nx * (x - ox) + ny * (y - oy) + nz * (z - oz) - middle) <= reach
+  }
+
+  /// Whether any of the box of a chunk is in the picture and the slice.
   inSight(chunk, matrix) {
+    const { plane, reach } = this.slab, half = chunk.most.map((v, k) => (v - chunk.least[k]) / 2)
+    const away = vectorDot(plane, chunk.least.map((v, k) => v + half[k] - this.origin[k])) - plane[3]
+    if (Math.abs(away) > reach + vectorDot(plane.map(Math.abs), half)) return false
     const outside = [0, 0, 0, 0, 0, 0]
     for (let corner = 0; corner < 8; ++corner) {
       const p = [0, 1, 2].map(k => (corner >> k & 1 ? chunk.most : chunk.least)[k] - this.origin[k])
@@ -214,7 +240,7 @@ class View {
     if (this.origin && points.count > 0 && this.done < 1) {
       const matrix = camera.matrix()
       const look = { matrix, near: camera.near, now: this.now, trail: this.now < Infinity ? this.trail : 0, ratio: this.ratio,
-                     fresh: this.freshColour ?? [1, 1, 1] }
+                     fresh: this.freshColour ?? [1, 1, 1], slab: this.slab }
       if (this.done === 0) painter.drawWays(this, look, this.wayColour ?? [1, 1, 1])
       const seen = points.chunks.filter(c => c.begin - this.start <= this.now && this.inSight(c, matrix))
       const total = seen.reduce((sum, c) => sum + c.count, 0)
@@ -225,6 +251,7 @@ class View {
       look.size = 1.1 * sparse * this.pointSize * this.spacing * camera.scale  // at a depth of a metre
       look.least = 1.3 * sparse * this.ratio * this.pointSize
       look.most = 10 * this.ratio * this.pointSize
+      look.many = total * next > camera.width * camera.height / 4
       for (const chunk of seen) {
         const first = Math.floor(chunk.count * this.done), end = Math.floor(chunk.count * next)
         if (end <= first) continue
@@ -257,7 +284,7 @@ class View {
         if (sx > reach || sx < -reach) continue
         const sy = (u[0] * dx + u[1] * dy + u[2] * dz) * scale / depth - up
         const away = Math.hypot(sx, sy)
-        if (away > reach || time[i] > until || this.hides?.(i)) continue
+        if (away > reach || time[i] > until || this.hides?.(i) || !this.inSlab([px[i], py[i], pz[i]])) continue
         const c = depth * (1 + 0.004 * (away / this.ratio) ** 2)  // front to back, with a penalty for distance from the pixel
         if (c < cost) cost = c, best = i
       }
