@@ -71,14 +71,14 @@ struct ImagePoint {
 /// cell: crowns, trunks, walls, masts, but no slopes. None if fewer than one in a hundred do.
 [[nodiscard]] inline std::vector<ImagePoint> standing(std::span<const ImagePoint> points) {
   constexpr std::size_t cells = 64;
-  const auto [west, east] = percentiles(points, 0.001, [](const ImagePoint& p) { return static_cast<double>(p.x); });
-  const auto [south, north] = percentiles(points, 0.001, [](const ImagePoint& p) { return static_cast<double>(p.y); });
-  const double size = std::max({east - west, north - south, 1e-3}) / cells;
+  const auto x = percentiles(points, 0.001, [](const ImagePoint& p) { return static_cast<double>(p.x); });
+  const auto y = percentiles(points, 0.001, [](const ImagePoint& p) { return static_cast<double>(p.y); });
+  const double size = std::max({x.second - x.first, y.second - y.first, 1e-3}) / cells;
   const auto cell = [&](const ImagePoint& p) {
     const auto along = [&](double offset) {
       return static_cast<std::size_t>(std::clamp(offset / size, 0.0, cells - 1.0));
     };
-    return along(p.y - south) * cells + along(p.x - west);
+    return along(p.y - y.first) * cells + along(p.x - x.first);
   };
   std::vector<float> lowest(cells * cells, std::numeric_limits<float>::infinity());
   for (const ImagePoint& p : points) lowest[cell(p)] = std::min(lowest[cell(p)], p.z);
