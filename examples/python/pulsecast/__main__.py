@@ -28,6 +28,11 @@ def environment() -> dict[str, str]:
     return os.environ | {"PULSECAST_PYTHON": f"{platform.python_version()}, {numpy}"}
 
 
-if __name__ == "__main__":
+def main() -> None:
+    """Becomes the survey program, with the same arguments."""
     path = program()
     os.execve(path, [path, *sys.argv[1:]], environment())
+
+
+if __name__ == "__main__":
+    main()

@@ -328,9 +328,9 @@ def test_a_mesh_that_cannot_be_is_refused(vertices, triangles, field):
 
 
 @pytest.mark.parametrize(("ask", "says"), [
-    (lambda: pulsecast.Mesh(*SQUARE, classification=70000), "Mesh::classification is 70000, but must be a whole number from 0 to 65535"),
-    (lambda: pulsecast.Mesh(*SQUARE, object=-1), "Mesh::object is -1, but must be a whole number from 0 to 4294967295"),
-    (lambda: own_scanner.RosetteSurvey(10).run(end=2**64), "run end is 1.8446744073709552e\\+19, but must be a whole number from 0 to 1844"),
+    (lambda: pulsecast.Mesh(*SQUARE, classification=70000), "Mesh::classification is 70000, but must be from 0 to 65535"),
+    (lambda: pulsecast.Mesh(*SQUARE, object=-1), "Mesh::object is -1, but must be from 0 to 4294967295"),
+    (lambda: own_scanner.RosetteSurvey(10).run(end=2**64), "run end is 18446744073709551616, but must be a whole number from 0 to 1844"),
     (lambda: own_scanner.RosetteSurvey(10).run(every_pulses=-10**400), "run every_pulses is "),
     (lambda: pulsecast.RaycastingScene([pulsecast.Mesh(*SQUARE)]).occluded(np.zeros((1, 6)), seed=-3), "^seed is -3"),
 ])
