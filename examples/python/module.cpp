@@ -54,11 +54,6 @@ struct LegRow {
   std::int64_t first, end;
 };
 
-void warn(const std::vector<std::string>& warnings) {
-  for (const std::string& text : warnings)
-    if (PyErr_WarnEx(PyExc_UserWarning, text.c_str(), 1) != 0) throw py::error_already_set();
-}
-
 std::unique_ptr<Simulation> simulation_of(py::handle survey, Paths assets, std::vector<Simulation::Mesh> meshes,
                                           const std::map<std::string, py::object>& trajectories,
                                           std::optional<std::uint64_t> seed, bool echo_width, bool waveforms,

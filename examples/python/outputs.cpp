@@ -69,11 +69,6 @@ std::string in_keywords(std::string_view message) {
   return all.append(message);
 }
 
-void warn(const std::vector<std::string>& notes) {
-  for (const std::string& note : notes)
-    if (PyErr_WarnEx(PyExc_UserWarning, in_keywords(note).c_str(), 1) != 0) throw py::error_already_set();
-}
-
 /// Arguments of `run` and `write` about files.
 struct FileRequest {
   std::vector<fs::path> paths{};
@@ -184,7 +179,12 @@ class RunFiles {
     }
     notes_.note(left_out.notes(las_1_0_));
   }
-  [[nodiscard]] const std::vector<std::string>& notes() const noexcept { return kept_notes_; }
+  /// Warns of what was noted. Requires the GIL.
+  void warn_of_notes() const {
+    std::vector<std::string> notes = kept_notes_;
+    std::ranges::transform(notes, notes.begin(), in_keywords);
+    warn(notes);
+  }
 
  private:
   struct File {
@@ -373,7 +373,7 @@ void write_batch(const python::Batch& batch, const py::object& output, const std
     PyErr_SetNone(PyExc_KeyboardInterrupt);
     throw py::error_already_set();
   }
-  warn(files->notes());
+  files->warn_of_notes();
 }
 
 /// Run of a simulation, to files too if there are any.
@@ -421,7 +421,7 @@ class FileRun {
     const RunSummary summary = pulsecast::run(simulation_.survey(), options, Both{*files_, to_batches});
     files_->close();  // after an interrupt, too: what is there is complete
     const py::gil_scoped_acquire gil;
-    warn(files_->notes());
+    files_->warn_of_notes();
     return summary;
   }
 
@@ -440,6 +440,11 @@ std::string described_options() {
 }
 
 }  // namespace
+
+void warn(const std::vector<std::string>& texts) {
+  for (const std::string& text : texts)
+    if (PyErr_WarnEx(PyExc_UserWarning, text.c_str(), 1) != 0) throw py::error_already_set();
+}
 
 void bind_run_to_files(py::class_<Simulation>& simulation) {
   const auto runner = [](const Simulation& s, const python::RunRequest& request, const py::object& output,
