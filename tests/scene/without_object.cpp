@@ -59,13 +59,14 @@ std::pair<double, ObjectId> forward(const Map& map, const Vec3& from) {
 
 using Answer = std::pair<double, ObjectId>;
 
+const Deflector all_around{RotatingHead{.angular_rate = 20 * 360_deg},
+                           Deflector{OscillatingMirror{.cycle_rate = 200, .half_angle = 60_deg},
+                                     Scanner{.pulse_rate = 20_kHz, .pulses = 4000}}};
+
 /// Echoes of a survey of all around, by beams of one ray, or of several.
 template <class Beam, class Map>
 std::vector<Echo> echoes_in(const Map& map, const Beam& beam) {
-  const Platform platform{Tripod{.position = {0.1, 0.2, 0.3}}, Mount{},
-                          Deflector{RotatingHead{.angular_rate = 20 * 360_deg},
-                                    Deflector{OscillatingMirror{.cycle_rate = 200, .half_angle = 60_deg},
-                                              Scanner{.pulse_rate = 20_kHz, .pulses = 4000}}}};
+  const Platform platform{Tripod{.position = {0.1, 0.2, 0.3}}, Mount{}, all_around};
   const Survey survey{platform, beam, map, Receiver{}, FirstHit{}};
   Cloud cloud;
   run(survey, {.threads = 1}, cloud);
