@@ -44,7 +44,7 @@ Robot robot_in(const street::Scene& town, std::uint64_t seed) {
   for (double y = -74, side = 1; y < 80; y += dice.between(14, 20), side = -side)
     way.emplace_back(1.9 + side * dice.between(0.5, 1.5), y);
   const auto ground = [&](const Vec2& place, auto... near) { return town.ground_height(place, near...); };
-  return {plan_ground_vehicle(way, ground, {.acceleration = 4, .jerk = 8, .turn_radius = 25}),
+  return {plan_ground_vehicle(way, ground, {.acceleration = 5, .jerk = 8, .turn_radius = 30}),
           static_cast<double>(seed)};
 }
 
