@@ -35,6 +35,7 @@ using namespace pulsecast;
 using namespace py::literals;
 using helios::CompiledSurvey;
 using helios::Simulation;
+using python::Whole;
 using Paths = std::vector<std::filesystem::path>;
 
 namespace {
@@ -56,10 +57,11 @@ struct LegRow {
 
 std::unique_ptr<Simulation> simulation_of(py::handle survey, Paths assets, std::vector<Simulation::Mesh> meshes,
                                           const std::map<std::string, py::object>& trajectories,
-                                          std::optional<std::uint64_t> seed, bool echo_width, bool waveforms,
+                                          std::optional<Whole<"Simulation seed">> seed, bool echo_width, bool waveforms,
                                           bool waveform_noise, bool fixed_incidence, bool library_physics,
                                           bool light_paths, bool uncertainty, bool platform_noise, bool leg_noise,
-                                          unsigned threads, int run) {
+                                          Whole<"Simulation threads", unsigned> threads,
+                                          Whole<"Simulation repetition", int> run) {
   const helios::SurveySettings settings = survey_of(survey);
   require_within("Simulation repetition", run, 0, std::numeric_limits<int>::max(), "");
   for (std::filesystem::path& folder : py::module_::import("pulsecast").attr("asset_folders")().cast<Paths>())
@@ -116,8 +118,8 @@ py::dict dict_of(const EchoErrors& errors) {
   return all;
 }
 
-py::dict errors_of(const Simulation& simulation, std::size_t clusters, PulseIndex length, std::uint64_t seed,
-                   unsigned threads) {
+py::dict errors_of(const Simulation& simulation, Whole<"errors clusters"> clusters, Whole<"errors length"> length,
+                   Whole<"errors seed"> seed, Whole<"errors threads", unsigned> threads) {
   const RunErrors errors = [&] {
     const py::gil_scoped_release release;
     return simulation.errors({.seed = seed, .clusters = clusters, .length = length, .threads = threads});
@@ -136,8 +138,8 @@ py::dict errors_of(const Simulation& simulation, std::size_t clusters, PulseInde
 
 /// The simulation with settings that reach an accuracy, or come nearest, and what is known of them.
 py::tuple chosen(const Simulation& simulation, std::optional<double> range, std::optional<double> position,
-                 std::optional<double> intensity, double echoes, std::size_t clusters, PulseIndex length,
-                 std::uint64_t seed, unsigned threads) {
+                 std::optional<double> intensity, double echoes, Whole<"choose clusters"> clusters,
+                 Whole<"choose length"> length, Whole<"choose seed"> seed, Whole<"choose threads", unsigned> threads) {
   const Accuracy accuracy{range.value_or(Accuracy::any), position.value_or(Accuracy::any),
                           intensity.value_or(Accuracy::any), echoes};
   const SettingsChoice choice = [&] {
