@@ -55,6 +55,13 @@ struct LegRow {
   std::int64_t first, end;
 };
 
+/// Folders in which files are searched: those given, then the catalogue.
+Paths with_catalogue(Paths folders) {
+  for (std::filesystem::path& folder : py::module_::import("pulsecast").attr("asset_folders")().cast<Paths>())
+    folders.push_back(std::move(folder));
+  return folders;
+}
+
 std::unique_ptr<Simulation> simulation_of(py::handle survey, Paths assets, std::vector<Simulation::Mesh> meshes,
                                           const std::map<std::string, py::object>& trajectories,
                                           std::optional<Whole<"Simulation seed">> seed, bool echo_width, bool waveforms,
@@ -64,8 +71,7 @@ std::unique_ptr<Simulation> simulation_of(py::handle survey, Paths assets, std::
                                           Whole<"Simulation repetition", int> run) {
   const helios::SurveySettings settings = survey_of(survey);
   require_within("Simulation repetition", run, 0, std::numeric_limits<int>::max(), "");
-  for (std::filesystem::path& folder : py::module_::import("pulsecast").attr("asset_folders")().cast<Paths>())
-    assets.push_back(std::move(folder));
+  assets = with_catalogue(std::move(assets));
   std::map<std::string, std::vector<TimedPose>> paths;
   for (const auto& [name, poses] : trajectories) paths[name] = trajectory_poses(poses, "trajectories['" + name + "']");
   std::unique_ptr<Simulation> simulation;
@@ -176,15 +182,15 @@ py::array legs_of(const Simulation& simulation) {
 void bind_documents(py::module_& m) {
   m.def(
       "read_survey",
-      [](const std::filesystem::path& path, const Paths& assets) {
-        helios::SurveyDocument document = helios::read_survey(path, {.assets = assets});
+      [](const std::filesystem::path& path, Paths assets) {
+        helios::SurveyDocument document = helios::read_survey(path, {.assets = with_catalogue(std::move(assets))});
         warn(document.warnings);
         return to_python(document.survey);
       },
       "path"_a, "assets"_a = Paths{},
       "Reads the XML document of a survey, with all documents that it refers to, and returns its SurveySettings. "
       "Search folders: `assets`, "
-      "then that of the document. Raises FileError with all errors; other defects are warnings.");
+      "the catalogue, then that of the document. Raises FileError with all errors; other defects are warnings.");
   m.def(
       "write_survey",
       [](const std::filesystem::path& path, py::handle survey) { helios::write_survey(path, survey_of(survey)); },
@@ -195,8 +201,9 @@ void bind_documents(py::module_& m) {
       "Text that `write_survey` writes.");
   m.def(
       "read_assets",
-      [](const std::filesystem::path& path, const Paths& assets) {
-        const helios::AssetDocument document = helios::read_assets(path, {.assets = assets});
+      [](const std::filesystem::path& path, Paths assets) {
+        const helios::AssetDocument document =
+            helios::read_assets(path, {.assets = with_catalogue(std::move(assets))});
         warn(document.warnings);
         return to_python(document);
       },
@@ -231,7 +238,7 @@ void bind_simulation(py::module_& m) {
            "seed"_a = py::none(), "echo_width"_a = false, "waveforms"_a = false, "waveform_noise"_a = false,
            "fixed_incidence"_a = false, "library_physics"_a = false, "light_paths"_a = false, "uncertainty"_a = false,
            "platform_noise"_a = true, "leg_noise"_a = true, "threads"_a = 0, "repetition"_a = 0,
-           "survey: SurveySettings. assets: search folders. meshes: triangles in addition to the survey's parts. "
+           "survey: SurveySettings. assets: search folders before the catalogue. meshes: triangles in addition to the survey's parts. "
            "trajectories: arrays by the names that legs have as `trajectory.file`, one pose a row: time [s], x, y, z "
            "[m, world], and roll, pitch, yaw [rad; yaw clockwise from north] or a quaternion x, y, z, w from the "
            "axes right, forward, up to the world; without either, the platform heads along its path. Also what "

@@ -204,6 +204,7 @@ def test_the_catalogue_is_at_hand():
     [folder] = pulsecast.asset_folders()
     scanners = pulsecast.read_assets(folder / "data" / "scanners_tls.xml")["scanners"]
     assert all(isinstance(scanner, pulsecast.ScannerSettings) for scanner in scanners) and len(scanners) > 3
+    assert pulsecast.read_survey(HERE.parents[2] / "examples" / "yard" / "yard.xml").scanner.id == "riegl_vz400"
 
 
 def test_errors_have_their_fields(survey, tmp_path):
