@@ -202,8 +202,7 @@ void bind_documents(py::module_& m) {
   m.def(
       "read_assets",
       [](const std::filesystem::path& path, Paths assets) {
-        const helios::AssetDocument document =
-            helios::read_assets(path, {.assets = with_catalogue(std::move(assets))});
+        const helios::AssetDocument document = helios::read_assets(path, {.assets = with_catalogue(std::move(assets))});
         warn(document.warnings);
         return to_python(document);
       },
@@ -238,7 +237,8 @@ void bind_simulation(py::module_& m) {
            "seed"_a = py::none(), "echo_width"_a = false, "waveforms"_a = false, "waveform_noise"_a = false,
            "fixed_incidence"_a = false, "library_physics"_a = false, "light_paths"_a = false, "uncertainty"_a = false,
            "platform_noise"_a = true, "leg_noise"_a = true, "threads"_a = 0, "repetition"_a = 0,
-           "survey: SurveySettings. assets: search folders before the catalogue. meshes: triangles in addition to the survey's parts. "
+           "survey: SurveySettings. assets: search folders before the catalogue. meshes: triangles in addition to the "
+           "survey's parts. "
            "trajectories: arrays by the names that legs have as `trajectory.file`, one pose a row: time [s], x, y, z "
            "[m, world], and roll, pitch, yaw [rad; yaw clockwise from north] or a quaternion x, y, z, w from the "
            "axes right, forward, up to the world; without either, the platform heads along its path. Also what "
