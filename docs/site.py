@@ -1,10 +1,11 @@
 # SPDX-FileCopyrightText: 2026 the pulsecast contributors
 # SPDX-License-Identifier: MIT
 """Hooks of MkDocs: pages stay as GitHub shows them. On the site, a file has its place in the repository, without `docs/`: also
-files beside docs/ that pages link to. Headings have GitHub's anchors, and lists need no blank line before them. With
-PULSECAST_REFERENCE, the folder of Doxygen's html/, the site has the reference, too."""
+files beside docs/ that pages link to. A notebook is a page, too. Headings have GitHub's anchors, and lists need no blank line
+before them. With PULSECAST_REFERENCE, the folder of Doxygen's html/, the site has the reference, too."""
 
 import html
+import json
 import logging
 import os
 import posixpath
@@ -31,6 +32,27 @@ def linked(page, target):
     return "" if ":" in target or not (ROOT / path).is_file() else path
 
 
+def notebook(path):
+    """Markdown of a notebook: its text, its code, what this printed and drew, and a link to the file."""
+    parts = []
+    for cell in json.loads(path.read_text())["cells"]:
+        source = "".join(cell["source"])
+        parts.append(source if cell["cell_type"] == "markdown" else f"```python\n{source}\n```")
+        for output in cell.get("outputs", []):
+            data = output.get("data", {})
+            if "image/png" in data:
+                parts.append(f"![what the code above draws](data:image/png;base64,{''.join(data['image/png']).strip()})")
+            else:
+                parts.append(f"```text\n{''.join(output.get('text') or data['text/plain']).rstrip()}\n```")
+    return "\n\n".join([*parts, f'<a href="{path.name}" download>This page as a notebook</a>'])
+
+
+def source_of(file):
+    """Markdown of a page."""
+    path = Path(file.abs_src_path)
+    return path.read_text() if path.exists() else notebook(path.with_suffix(".ipynb"))
+
+
 def slug(text, separator):
     return re.sub(r"[^\w -]", "", text.lower(), flags=re.A).replace(" ", "-")
 
@@ -46,8 +68,10 @@ def on_files(files, config):
 
     for path in ("README.md", "CONTRIBUTING.md", "CHANGELOG.md"):
         add(ROOT, path)
+    for path in (ROOT / "docs").rglob("*.ipynb"):
+        add(ROOT / "docs", path.relative_to(ROOT / "docs").with_suffix(".md").as_posix())
     for file in list(files.documentation_pages()):
-        for target, _ in LINK.findall(Path(file.abs_src_path).read_text()):
+        for target, _ in LINK.findall(source_of(file)):
             path = linked(in_repository(file), target)
             if path and not path.startswith("docs/"):
                 add(ROOT, path)
@@ -61,12 +85,16 @@ def on_nav(nav, config, files):
         nav.items.append(Link("Reference of C++", f"{REFERENCE.name}/html/index.html"))
 
 
+def on_page_read_source(page, config):
+    return source_of(page.file)
+
+
 def on_page_markdown(markdown, page, config, files):
     name = in_repository(page.file)
     folder = posixpath.dirname(name.removeprefix("docs/")) or "."
 
     def moved(match):
-        path = linked(name, match[1])
+        path = re.sub(r"\.ipynb$", ".md", linked(name, match[1]))
         return f"]({posixpath.relpath(path.removeprefix('docs/'), folder)}{match[2] or ''})" if path else match[0]
 
     pieces = re.split(r"(^```.*?^```$)", markdown, flags=re.M | re.S)

@@ -63,7 +63,7 @@ within 'cd /opt/try && pulsecast survey.xml --format laz --output out --threads 
 step "Python"
 within 'cd /opt/try && python3 -c "
 import pulsecast
-survey = pulsecast.read_survey(\"survey.xml\", assets=pulsecast.asset_folders())
+survey = pulsecast.read_survey(\"survey.xml\")
 points = pulsecast.Simulation(survey, assets=[\".\"]).run().points
 print(len(points), \"points\", points.dtype.names)
 assert len(points) > 10_000 and abs(points[\"z\"]).max() < 0.1

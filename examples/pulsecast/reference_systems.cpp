@@ -3,6 +3,7 @@
 #include "reference_systems.hpp"
 
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <variant>
@@ -73,7 +74,7 @@ io::SpatialReference reference_system_of(const Options& options, const helios::S
   if (found == io::SpatialReference{} && options.wkt.empty()) return found;
   try {
     found = completed(found, options.wkt, notes);
-  } catch (const FileError& error) {
+  } catch (const std::runtime_error& error) {  // a FileError, or of a part without its library
     if (is_given) throw;
     notes.warn("the scene's rasters: " + std::string(error.what()) + "; results name no reference system");
     return {};

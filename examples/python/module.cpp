@@ -35,6 +35,7 @@ using namespace pulsecast;
 using namespace py::literals;
 using helios::CompiledSurvey;
 using helios::Simulation;
+using python::Whole;
 using Paths = std::vector<std::filesystem::path>;
 
 namespace {
@@ -54,16 +55,23 @@ struct LegRow {
   std::int64_t first, end;
 };
 
+/// Folders in which files are searched: those given, then the catalogue.
+Paths with_catalogue(Paths folders) {
+  for (std::filesystem::path& folder : py::module_::import("pulsecast").attr("asset_folders")().cast<Paths>())
+    folders.push_back(std::move(folder));
+  return folders;
+}
+
 std::unique_ptr<Simulation> simulation_of(py::handle survey, Paths assets, std::vector<Simulation::Mesh> meshes,
                                           const std::map<std::string, py::object>& trajectories,
-                                          std::optional<std::uint64_t> seed, bool echo_width, bool waveforms,
+                                          std::optional<Whole<"Simulation seed">> seed, bool echo_width, bool waveforms,
                                           bool waveform_noise, bool fixed_incidence, bool library_physics,
                                           bool light_paths, bool uncertainty, bool platform_noise, bool leg_noise,
-                                          unsigned threads, int run) {
+                                          Whole<"Simulation threads", unsigned> threads,
+                                          Whole<"Simulation repetition", int> run) {
   const helios::SurveySettings settings = survey_of(survey);
   require_within("Simulation repetition", run, 0, std::numeric_limits<int>::max(), "");
-  for (std::filesystem::path& folder : py::module_::import("pulsecast").attr("asset_folders")().cast<Paths>())
-    assets.push_back(std::move(folder));
+  assets = with_catalogue(std::move(assets));
   std::map<std::string, std::vector<TimedPose>> paths;
   for (const auto& [name, poses] : trajectories) paths[name] = trajectory_poses(poses, "trajectories['" + name + "']");
   std::unique_ptr<Simulation> simulation;
@@ -116,8 +124,8 @@ py::dict dict_of(const EchoErrors& errors) {
   return all;
 }
 
-py::dict errors_of(const Simulation& simulation, std::size_t clusters, PulseIndex length, std::uint64_t seed,
-                   unsigned threads) {
+py::dict errors_of(const Simulation& simulation, Whole<"errors clusters"> clusters, Whole<"errors length"> length,
+                   Whole<"errors seed"> seed, Whole<"errors threads", unsigned> threads) {
   const RunErrors errors = [&] {
     const py::gil_scoped_release release;
     return simulation.errors({.seed = seed, .clusters = clusters, .length = length, .threads = threads});
@@ -136,8 +144,8 @@ py::dict errors_of(const Simulation& simulation, std::size_t clusters, PulseInde
 
 /// The simulation with settings that reach an accuracy, or come nearest, and what is known of them.
 py::tuple chosen(const Simulation& simulation, std::optional<double> range, std::optional<double> position,
-                 std::optional<double> intensity, double echoes, std::size_t clusters, PulseIndex length,
-                 std::uint64_t seed, unsigned threads) {
+                 std::optional<double> intensity, double echoes, Whole<"choose clusters"> clusters,
+                 Whole<"choose length"> length, Whole<"choose seed"> seed, Whole<"choose threads", unsigned> threads) {
   const Accuracy accuracy{range.value_or(Accuracy::any), position.value_or(Accuracy::any),
                           intensity.value_or(Accuracy::any), echoes};
   const SettingsChoice choice = [&] {
@@ -174,15 +182,15 @@ py::array legs_of(const Simulation& simulation) {
 void bind_documents(py::module_& m) {
   m.def(
       "read_survey",
-      [](const std::filesystem::path& path, const Paths& assets) {
-        helios::SurveyDocument document = helios::read_survey(path, {.assets = assets});
+      [](const std::filesystem::path& path, Paths assets) {
+        helios::SurveyDocument document = helios::read_survey(path, {.assets = with_catalogue(std::move(assets))});
         warn(document.warnings);
         return to_python(document.survey);
       },
       "path"_a, "assets"_a = Paths{},
       "Reads the XML document of a survey, with all documents that it refers to, and returns its SurveySettings. "
       "Search folders: `assets`, "
-      "then that of the document. Raises FileError with all errors; other defects are warnings.");
+      "the catalogue, then that of the document. Raises FileError with all errors; other defects are warnings.");
   m.def(
       "write_survey",
       [](const std::filesystem::path& path, py::handle survey) { helios::write_survey(path, survey_of(survey)); },
@@ -193,8 +201,8 @@ void bind_documents(py::module_& m) {
       "Text that `write_survey` writes.");
   m.def(
       "read_assets",
-      [](const std::filesystem::path& path, const Paths& assets) {
-        const helios::AssetDocument document = helios::read_assets(path, {.assets = assets});
+      [](const std::filesystem::path& path, Paths assets) {
+        const helios::AssetDocument document = helios::read_assets(path, {.assets = with_catalogue(std::move(assets))});
         warn(document.warnings);
         return to_python(document);
       },
@@ -229,7 +237,8 @@ void bind_simulation(py::module_& m) {
            "seed"_a = py::none(), "echo_width"_a = false, "waveforms"_a = false, "waveform_noise"_a = false,
            "fixed_incidence"_a = false, "library_physics"_a = false, "light_paths"_a = false, "uncertainty"_a = false,
            "platform_noise"_a = true, "leg_noise"_a = true, "threads"_a = 0, "repetition"_a = 0,
-           "survey: SurveySettings. assets: search folders. meshes: triangles in addition to the survey's parts. "
+           "survey: SurveySettings. assets: search folders before the catalogue. meshes: triangles in addition to the "
+           "survey's parts. "
            "trajectories: arrays by the names that legs have as `trajectory.file`, one pose a row: time [s], x, y, z "
            "[m, world], and roll, pitch, yaw [rad; yaw clockwise from north] or a quaternion x, y, z, w from the "
            "axes right, forward, up to the world; without either, the platform heads along its path. Also what "

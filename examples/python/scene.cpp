@@ -253,15 +253,16 @@ std::vector<RaycastingScene::Part> parts_of(const std::vector<Simulation::Mesh>&
   return all;
 }
 
-std::unique_ptr<RaycastingScene> raycasting_scene_of(const std::vector<Simulation::Mesh>& meshes, unsigned threads) {
+std::unique_ptr<RaycastingScene> raycasting_scene_of(const std::vector<Simulation::Mesh>& meshes,
+                                                     python::Whole<"RaycastingScene threads", unsigned> threads) {
   const py::gil_scoped_release free;
   return std::make_unique<RaycastingScene>(parts_of(meshes, threads));
 }
 
 std::unique_ptr<RaycastingScene> with_meshes(const RaycastingScene& scene, const std::vector<Simulation::Mesh>& meshes,
-                                             unsigned threads) {
+                                             python::Whole<"with_meshes threads", unsigned> threads) {
   const py::gil_scoped_release free;
-  return std::make_unique<RaycastingScene>(scene.with_parts(parts_of(meshes, threads), threads));
+  return std::make_unique<RaycastingScene>(scene.with_parts(parts_of(meshes, threads), threads.value));
 }
 
 void bind_light(py::module_& m) {

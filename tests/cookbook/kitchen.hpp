@@ -11,7 +11,7 @@
 
 namespace pulsecast::support {
 
-/// Working folder of a recipe of docs/cookbook.md, with the files that recipes read.
+/// Working folder of a recipe of docs/, with the files that recipes read.
 class Kitchen {
  public:
   Kitchen() {

@@ -1,15 +1,15 @@
 # SPDX-FileCopyrightText: 2026 the pulsecast contributors
 # SPDX-License-Identifier: MIT
 
-# Turns docs/cookbook.md into a test program. The first block of C++ is common to all recipes; each further block is a test case, named by
-# its heading, with at most 15 lines, in the chapter of extensions 12. A struct with a member template stands before its test case. The expression in a comment `<!-- check: ... -->` after a block must be true at its end.
+# Turns the recipes of pages, docs/cookbook.md first, into a test program. The first block of C++ is common to all; each further block is a test case, named by
+# its heading, with at most 15 lines, of a page of extensions 12. A struct with a member template stands before its test case. The expression in a comment `<!-- check: ... -->` after a block must be true at its end.
 function finish() {
   cases = cases hoisted
   hoisted = ""
   if (body != "") cases = cases "\nTEST_CASE(\"" heading "\") {\n  const support::Kitchen kitchen;\n" body "}\n"
   body = ""
 }
-/^## / { limit = $2 == "Extensions" ? 12 : 15 }
+FNR == 1 { limit = $2 == "Extensions" ? 12 : 15 }
 /^#+ / { finish(); heading = $0; sub(/^#+ /, "", heading) }
 /^```cpp$/ { inside = 1; lines = 0; if (++blocks > 1) body = "#line " FNR + 1 " \"" FILENAME "\"\n"; next }
 /^```$/ && inside {

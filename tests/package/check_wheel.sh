@@ -57,7 +57,7 @@ v/bin/python -c '
 import pulsecast
 [folder] = pulsecast.asset_folders()
 assert folder.is_relative_to(pulsecast.__path__[0]), folder
-survey = pulsecast.read_survey("tree.xml", assets=[folder])
+survey = pulsecast.read_survey("tree.xml")
 points = pulsecast.Simulation(survey, assets=["."]).run().points
 print(len(points), "points")
 assert len(points) > 10_000 and points["z"].max() > 3

@@ -98,7 +98,7 @@ notices "$public" "sed -i 's/LinkBudget//g' docs/*.md"
 links='every link of a page leads somewhere'
 notices "$links" 'rm docs/tables/extremes.md'
 notices "$links" 'sed -i "s/^## Ray queries/## Queries/" docs/scenes.md && echo "[queries](docs/scenes.md#ray-queries)" >> README.md'
-notices 'a page has at most 5,000 words beside its tables and code' 'cat docs/architecture.md docs/physics.md docs/cookbook.md >> docs/io.md'
+notices 'a page has at most 5,000 words' 'cat docs/architecture.md >> docs/io.md'
 notices 'docs/gallery.md shows every picture, and has the command of each' 'sed -i s/rotating_head// docs/gallery.md'
 notices 'the code in the README is compiled' "printf '\140\140\140cpp\nint x;\n\140\140\140\n' >> README.md"
 notices 'the README shows examples/embed.cpp' 'echo "// more" >> examples/embed.cpp'

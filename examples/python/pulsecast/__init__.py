@@ -4,7 +4,7 @@
 
     import pulsecast
 
-    survey = pulsecast.read_survey("survey.xml", assets=pulsecast.asset_folders())
+    survey = pulsecast.read_survey("survey.xml")
     survey.legs[0].platform.position = (0, 0, 120)
     points = pulsecast.Simulation(survey).run().points
 

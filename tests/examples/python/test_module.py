@@ -204,6 +204,7 @@ def test_the_catalogue_is_at_hand():
     [folder] = pulsecast.asset_folders()
     scanners = pulsecast.read_assets(folder / "data" / "scanners_tls.xml")["scanners"]
     assert all(isinstance(scanner, pulsecast.ScannerSettings) for scanner in scanners) and len(scanners) > 3
+    assert pulsecast.read_survey(HERE.parents[2] / "examples" / "yard" / "yard.xml").scanner.id == "riegl_vz400"
 
 
 def test_errors_have_their_fields(survey, tmp_path):
@@ -333,6 +334,9 @@ def test_a_mesh_that_cannot_be_is_refused(vertices, triangles, field):
     (lambda: own_scanner.RosetteSurvey(10).run(end=2**64), "run end is 18446744073709551616, but must be a whole number from 0 to 1844"),
     (lambda: own_scanner.RosetteSurvey(10).run(every_pulses=-10**400), "run every_pulses is "),
     (lambda: pulsecast.RaycastingScene([pulsecast.Mesh(*SQUARE)]).occluded(np.zeros((1, 6)), seed=-3), "^seed is -3"),
+    (lambda: pulsecast.RaycastingScene([pulsecast.Mesh(*SQUARE)], threads=2**40), "^RaycastingScene threads is 1099511627776"),
+    (lambda: pulsecast.Simulation(pulsecast.SurveySettings(), seed=-1), "^Simulation seed is -1"),
+    (lambda: pulsecast.Simulation(pulsecast.SurveySettings(), threads=-1), "^Simulation threads is -1"),
 ])
 def test_whole_numbers_out_of_range_are_refused_in_a_sentence(ask, says):
     with pytest.raises(pulsecast.SettingError, match=says) as refused:
