@@ -75,6 +75,9 @@ TEST_CASE("a block flight refuses what cannot be flown") {
   CHECK_NOTHROW(BlockFlight{.area = area}.validate());
   CHECK_THROWS_AS(BlockFlight{}.validate(), SettingError);
   CHECK_THROWS_AS((BlockFlight{.area = {{0, 0, 0}, {nan, 1, 0}}}.validate()), SettingError);
+  CHECK_THROWS_WITH((BlockFlight{.area = {{0, 9, 0}, {1, 4, 0}}}.validate()),
+                    "BlockFlight::area (side) is -5 m, but must be at least 0");
+  CHECK_NOTHROW(BlockFlight{.area = {{0, 0, 70}, {100, 100, 20}}}.validate());  // its heights are ignored
   CHECK_THROWS_AS((BlockFlight{.area = area, .swath = 0}.validate()), SettingError);
   CHECK_THROWS_AS((BlockFlight{.area = area, .overlap = 1}.validate()), SettingError);
   CHECK_THROWS_AS((BlockFlight{.area = area, .heading = nan}.validate()), SettingError);

@@ -18,8 +18,8 @@ struct BlockFlight {
   double run_in = 0;      ///< extension of each line before and after the area [m]
 
   void validate() const {
-    if (area.empty())
-      throw SettingError("BlockFlight::area (width)", area.size().x, "m", "at least 0, as must be the length");
+    for (const double side : {area.size().x, area.size().y})
+      if (!(side >= 0)) throw SettingError("BlockFlight::area (side)", side, "m", "at least 0");
     require_finite("BlockFlight::area (size)", std::hypot(area.size().x, area.size().y), "m");
     require_finite("BlockFlight::altitude", altitude, "m");
     require_positive("BlockFlight::swath", swath, "m");
