@@ -13,7 +13,7 @@ tried=0
 fresh() {
   rm -rf "$copy/tree" && mkdir "$copy/tree" && cd "$copy/tree" || exit 2
   cp -R "$root/include" "$root/examples" "$root/tests" "$root/bench" "$root/.ci" "$root/CMakeLists.txt" . || exit 2
-  mkdir docs && cp -R "$root"/docs/*.md "$root/docs/packaging" "$root/docs/tables" "$root/docs/for" docs && ln -s "$root/docs/pictures" "$root/docs/notebooks" docs || exit 2
+  mkdir docs && cp -R "$root"/docs/*.md "$root/docs/packaging" "$root/docs/tables" "$root/docs/for" "$root/docs/tutorials" docs && ln -s "$root/docs/pictures" docs || exit 2
   cp "$root"/*.md "$root"/*.json "$root"/*.cff . 2> /dev/null
 }
 

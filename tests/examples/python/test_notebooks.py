@@ -14,11 +14,11 @@ NOTEBOOKS = sorted((Path(__file__).parents[3] / "docs" / "tutorials").glob("*.ip
 
 
 def shown(cell):
-    """What a cell of code prints and draws: its texts, and how many pictures."""
+    """What a cell of code prints and draws: its text, however it comes in parts, and how many pictures."""
     outputs = [output for output in cell.outputs if output.output_type != "stream" or output.name == "stdout"]  # warnings may come and go
-    texts = ["".join(output.get("text") or output.data.get("text/plain", "")) for output in outputs]
+    text = "".join("".join(output.get("text") or output.data.get("text/plain", "")) for output in outputs)
     pictures = sum("image/png" in output.get("data", {}) for output in outputs)
-    return [re.sub(r"<Figure .*>|[\d,.]+", "", text) for text in texts], pictures  # other processors round otherwise
+    return re.sub(r"<Figure .*>|[\d,.]+", "", text), pictures  # other processors round otherwise
 
 
 @pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)
