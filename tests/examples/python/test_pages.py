@@ -11,12 +11,25 @@ from pathlib import Path
 import pytest
 
 DOCS = Path(__file__).parents[3] / "docs"
-BLOCKS = {page: re.findall(r"^```python\n(.*?)^```", page.read_text(), re.M | re.S) for page in [*DOCS.glob("for/*.md"), DOCS / "from-helios.md"]}
+BLOCKS = {page: re.findall(r"^```python\n(.*?)^```", page.read_text(), re.M | re.S) for page in [*DOCS.glob("for/*.md"), *DOCS.glob("tutorials/*.md"), DOCS / "from-helios.md"]}
+
+
+def unpack_a_drive(folder):
+    """What the page's commands leave there."""
+    modules = Path(os.environ["PULSECAST_NODE_MODULES"])
+    if not (modules / "@mcap" / "core").exists():
+        pytest.skip("missing: @mcap/core of npm")
+    pytest.importorskip("matplotlib")
+    subprocess.run([Path(os.environ["PULSECAST_PROGRAM"]).parent / "drive", "--seed", "7", "--output", folder], check=True, capture_output=True)
+    subprocess.run(["node", DOCS.parent / "bench" / "odometry" / "unbag.mjs", modules, folder / "drive.mcap", folder], check=True)
 
 
 @pytest.mark.parametrize("page", [page for page, blocks in BLOCKS.items() if blocks], ids=lambda page: page.stem)
 def test_the_python_of_a_page_runs(page, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("MPLBACKEND", "agg")
+    if page.stem == "drive":
+        unpack_a_drive(tmp_path)
     names = {}
     for block in BLOCKS[page]:
         exec(compile(block, page, "exec"), names)
