@@ -25,6 +25,7 @@ def shown(cell):
 def test_a_notebook_runs_and_shows_what_it_is_kept_with(path, tmp_path, monkeypatch):
     for variable in ("IPYTHONDIR", "JUPYTER_CONFIG_DIR", "JUPYTER_DATA_DIR", "JUPYTER_RUNTIME_DIR", "MPLCONFIGDIR"):
         monkeypatch.setenv(variable, str(tmp_path))
+    monkeypatch.setenv("PULSECAST_SOURCE", str(NOTEBOOKS[0].parents[2]))
     monkeypatch.setitem(os.environ, "PYDEVD_DISABLE_FILE_VALIDATION", "1")
     kept = nbformat.read(path, 4)
     run = nbformat.read(path, 4)
