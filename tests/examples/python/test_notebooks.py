@@ -29,7 +29,7 @@ def test_a_notebook_runs_and_shows_what_it_is_kept_with(path, tmp_path, monkeypa
     monkeypatch.setitem(os.environ, "PYDEVD_DISABLE_FILE_VALIDATION", "1")
     kept = nbformat.read(path, 4)
     run = nbformat.read(path, 4)
-    nbclient.NotebookClient(run, timeout=240, kernel_name="python3", resources={"metadata": {"path": str(tmp_path)}}).execute()
+    nbclient.NotebookClient(run, timeout=900, kernel_name="python3", resources={"metadata": {"path": str(tmp_path)}}).execute()
     cells = [(one, other) for one, other in zip(kept.cells, run.cells) if one.cell_type == "code"]
     for one, other in cells:
         assert shown(one) == shown(other), one.source

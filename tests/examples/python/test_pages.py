@@ -11,7 +11,8 @@ from pathlib import Path
 import pytest
 
 DOCS = Path(__file__).parents[3] / "docs"
-BLOCKS = {page: re.findall(r"^```python\n(.*?)^```", page.read_text(), re.M | re.S) for page in [*DOCS.glob("for/*.md"), *DOCS.glob("tutorials/*.md"), DOCS / "from-helios.md"]}
+PAGES = [*DOCS.glob("for/*.md"), *DOCS.glob("tutorials/*.md"), DOCS / "from-helios.md"]
+BLOCKS = {page: re.findall(r"^```python\n(.*?)^```", page.read_text(), re.M | re.S) for page in PAGES}
 
 
 def unpack_a_drive(folder):
@@ -20,7 +21,8 @@ def unpack_a_drive(folder):
     if not (modules / "@mcap" / "core").exists():
         pytest.skip("missing: @mcap/core of npm")
     pytest.importorskip("matplotlib")
-    subprocess.run([Path(os.environ["PULSECAST_PROGRAM"]).parent / "drive", "--seed", "7", "--output", folder], check=True, capture_output=True)
+    drive = Path(os.environ["PULSECAST_PROGRAM"]).parent / "drive"
+    subprocess.run([drive, "--seed", "7", "--output", folder], check=True, capture_output=True)
     subprocess.run(["node", DOCS.parent / "bench" / "odometry" / "unbag.mjs", modules, folder / "drive.mcap", folder], check=True)
 
 
