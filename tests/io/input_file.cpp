@@ -127,7 +127,12 @@ TEST_CASE("what is no file is refused, and says what was expected") {
   CHECK_THROWS_WITH_AS(InputFile(folder.path(), "a cloud"),
                        doctest::Contains("is a directory or device: expected a cloud"), FileError);
   CHECK_THROWS_WITH_AS(InputFile("/dev/zero", "a cloud"), doctest::Contains("is a directory or device"), FileError);
-  CHECK_THROWS_AS(InputFile("/proc/self/mem", "a cloud"), FileError);
+#if defined(_LIBCPP_VERSION)
+  const char* const endless = "is empty";  // as its streams find
+#else
+  const char* const endless = "cannot be read";
+#endif
+  CHECK_THROWS_WITH_AS(InputFile("/proc/self/mem", "a cloud"), doctest::Contains(endless), FileError);
   CHECK_THROWS_WITH_AS(InputFile(put(folder, ""), "a cloud"), doctest::Contains("is empty: expected a cloud"),
                        FileError);
 }

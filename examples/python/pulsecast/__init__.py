@@ -42,9 +42,9 @@ def asset_folders() -> list[Path]:
 def catalogue(assets=()):
     """Scanners and platforms of the catalogue, after those of `data/scanners*.xml` and `data/platforms*.xml` in the folders `assets`: a dict
     of lists of settings, as of `read_assets`."""
-    folders = [Path(folder) for folder in assets] + asset_folders()
+    folders = [Path(folder) for folder in assets]
     known = {"scanners": [], "platforms": [], "scenes": []}
-    for folder in folders:
+    for folder in folders + asset_folders():
         for kind in ("scanners", "platforms"):
             for file in sorted((folder / "data").glob(kind + "*.xml")):
                 known[kind] += _core.read_assets(file, folders)[kind]
