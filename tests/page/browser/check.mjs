@@ -3,14 +3,15 @@
 
 // Looks at pages in Chromium as people do: what is drawn, what is told of points, colours, histogram, timeline; and a page that is live.
 // Usage: node check.mjs CHROMIUM PROGRAM, where PROGRAM is pages.cpp. Needs nothing but Node.js. With the folder node_modules behind it that
-// has axe-core, it looks for barriers, too. With `speed` behind it, it measures how fast two million points turn instead.
+// has axe-core, it looks for barriers, too. With `speed` behind it, it measures how fast two million points turn instead. With `picture FILE.png`
+// behind it, PROGRAM is a page, of which it takes a picture when all points are drawn.
 
 import { execFileSync, spawn } from 'node:child_process'
 import { existsSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs'
 import { tmpdir } from 'node:os'
-import { join } from 'node:path'
+import { join, resolve } from 'node:path'
 
-const [chromium, program, what] = process.argv.slice(2)
+const [chromium, program, what, picture] = process.argv.slice(2)
 const folder = mkdtempSync(join(tmpdir(), 'pulsecast_page_'))
 const pause = milliseconds => new Promise(resolve => setTimeout(resolve, milliseconds))
 
@@ -73,6 +74,8 @@ const open = async url => {
   await tell('Page.navigate', { url })
   await until('!!window.pulsecast', 'the page is read')
 }
+const capture = async file => writeFileSync(file, Buffer.from((await tell('Page.captureScreenshot', { format: 'png' })).data, 'base64'))
+const resize = (width, height) => tell('Emulation.setDeviceMetricsOverride', { width, height, deviceScaleFactor: 1, mobile: false })
 /// The pixels that are not the background, or, if colours are given, have one of these; their share, and how many colours they have.
 const seen = known => page(`((known) => {
   pulsecast.view.drawFrame(performance.now())  // what WebGL has shown before is gone
@@ -226,7 +229,7 @@ async function checkFile() {
   expect((await seen()).share > 0.05, 'the cloud is seen in a small window')
   expect(await page('pulsecast.view.sky[0][0]') < 0.2, 'a dark page is dark')
   expect(await page('document.documentElement.scrollWidth') <= 380, 'nothing sticks out')
-  await tell('Emulation.setDeviceMetricsOverride', { width: 1100, height: 700, deviceScaleFactor: 1, mobile: false })
+  await resize(1100, 700)
   await tell('Emulation.setEmulatedMedia', { features: [] })
 
   // by WebGL, it is the same picture, but for the edges of points
@@ -357,7 +360,7 @@ async function checkChoice() {
 
 /// No name covers a mark, another name, or the scale bar.
 async function checkNames() {
-  await tell('Emulation.setDeviceMetricsOverride', { width: 1100, height: 700, deviceScaleFactor: 1, mobile: false })
+  await resize(1100, 700)
   const boxes = await page(`(async () => {
     const { view } = pulsecast, written = [], { prototype } = CanvasRenderingContext2D, fillText = prototype.fillText
     view.setWays([[0, 0], [0.5, 0], [0.6, 0.1], [9, 9], [-9, 9]].map(([x, y], i) => ({ name: 'set-up ' + i, times: [0], places: [[x, y, 3]] })))
@@ -382,7 +385,7 @@ async function checkBarriers(modules) {
   const axe = readFileSync(join(modules, 'axe-core', 'axe.min.js'), 'utf8')
   for (const scheme of ['light', 'dark'])
     for (const [width, height] of [[1100, 700], [390, 780]]) {
-      await tell('Emulation.setDeviceMetricsOverride', { width, height, deviceScaleFactor: 1, mobile: false })
+      await resize(width, height)
       await tell('Emulation.setEmulatedMedia', { features: [{ name: 'prefers-color-scheme', value: scheme }] })
       await open(`file://${folder}/page.html`)
       await page(`pulsecast.select(0), pulsecast.choose('class'), document.querySelector('details').open = true`)
@@ -475,14 +478,19 @@ try {
   const { targetInfos } = await tell('Target.getTargets')
   session = (await tell('Target.attachToTarget', { targetId: targetInfos.find(t => t.type === 'page').targetId, flatten: true })).sessionId
   for (const domain of ['Runtime', 'Log', 'Page', 'Network']) await tell(`${domain}.enable`)
-  await tell('Emulation.setDeviceMetricsOverride', { width: 1100, height: 700, deviceScaleFactor: 1, mobile: false })
+  await resize(1100, 700)
   if (what === 'speed') {
     await measureSpeed()
+  } else if (what === 'picture') {
+    await resize(1600, 900)
+    await open(`file://${resolve(program)}`)
+    await rest()
+    await capture(picture)
   } else {
     await checkFile()
     for (const check of [checkMeasuring, checkSlices, checkPictures, checkChoice, checkNames]) await check()
     if (what) await checkBarriers(what)
-    await tell('Emulation.setDeviceMetricsOverride', { width: 1100, height: 700, deviceScaleFactor: 1, mobile: false })
+    await resize(1100, 700)
     await checkEmpty()
     await checkLive(8000, false)
     await checkLive(1000000, true)
@@ -491,10 +499,7 @@ try {
   }
 } catch (error) {
   console.error(error.stack)
-  if (process.env.PULSECAST_PAGE_PICTURE) {
-    const { data } = await tell('Page.captureScreenshot', { format: 'png' })
-    writeFileSync(process.env.PULSECAST_PAGE_PICTURE, Buffer.from(data, 'base64'))
-  }
+  if (process.env.PULSECAST_PAGE_PICTURE) await capture(process.env.PULSECAST_PAGE_PICTURE)
   status = 1
 }
 over = true

@@ -249,7 +249,7 @@ class View {
       const sparse = moving ? Math.min(1.6, 1 / Math.sqrt(next)) : 1  // fewer points, larger ones
       this.coarse ||= sparse > 1
       look.size = 1.1 * sparse * this.pointSize * this.spacing * camera.scale  // at a depth of a metre
-      look.least = 1.3 * sparse * this.ratio * this.pointSize
+      look.least = 1.5 * sparse * this.ratio * this.pointSize
       look.most = 10 * this.ratio * this.pointSize
       look.many = total * next > camera.width * camera.height / 4
       for (const chunk of seen) {
