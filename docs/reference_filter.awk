@@ -70,7 +70,7 @@ BEGIN {
   function_of_a_class = "^ +(\\[\\[[a-z_:]+\\]\\] |static |constexpr |friend |inline )*[A-Za-z_][A-Za-z0-9_:<>, ]*[&* ]+([a-z_]+(==)?|operator\\[\\]|operator\\(\\))\\("
 }
 FILENAME ~ /\.md$/ {
-  while (match($0, /\]\((docs\/[A-Za-z\/_-]*(\.md|\.ipynb)|examples\/[a-z_.]*|[A-Z]*\.md)\)/)) {
+  while (match($0, /\]\((docs\/[A-Za-z0-9.\/_-]*(\.md|\.ipynb)|examples\/[a-z_.]*|[A-Z]*\.md)\)/)) {
     start = RSTART
     length_of_link = RLENGTH
     match(substr($0, 1, start), /.*\[/)
