@@ -1,15 +1,18 @@
 # SPDX-FileCopyrightText: 2026 the pulsecast contributors
 # SPDX-License-Identifier: MIT
 """Hooks of MkDocs: pages stay as GitHub shows them. On the site, a file has its place in the repository, without `docs/`: also
-files beside docs/ that pages link to. A notebook is a page, too. Headings have GitHub's anchors, and lists need no blank line
-before them. With PULSECAST_REFERENCE, the folder of Doxygen's html/, the site has the reference, too."""
+files beside docs/ that pages link to. A notebook is a page, too, with formulas as MathML if KaTeX is installed. Headings have GitHub's
+anchors, and lists need no blank line before them. With PULSECAST_REFERENCE, the folder of Doxygen's html/, the site has the reference, too."""
 
+import functools
 import html
 import json
 import logging
 import os
 import posixpath
 import re
+import shutil
+import subprocess
 from pathlib import Path
 
 from mkdocs.structure.files import File
@@ -17,6 +20,8 @@ from mkdocs.structure.nav import Link
 
 ROOT = Path(__file__).parents[1]
 LINK = re.compile(r"\]\(([^)#\s]+)(#[^)\s]*)?\)")
+FORMULA = re.compile(r"\$\$(.+?)\$\$|\$([^$\n]+)\$", re.S)
+KATEX = shutil.which("katex")
 REFERENCE = Path(os.environ["PULSECAST_REFERENCE"]) if "PULSECAST_REFERENCE" in os.environ else None
 log = logging.getLogger("mkdocs.plugins.site")
 
@@ -32,12 +37,24 @@ def linked(page, target):
     return "" if ":" in target or not (ROOT / path).is_file() else path
 
 
+def formula(match):
+    """MathML of a formula in TeX."""
+    command = [KATEX, "--format", "mathml", *(["--display-mode"] if match[1] else [])]
+    found = subprocess.run(command, input=match[1] or match[2], capture_output=True, text=True, check=True,
+                           env=os.environ | {"NODE_PATH": "/usr/share/nodejs"}).stdout  # which other builds of Node.js than Debian's do not search
+    return re.sub("<annotation.*?</annotation>", "", found.strip(), flags=re.S)
+
+
+@functools.cache
 def notebook(path):
     """Markdown of a notebook: its text, its code, what this printed and drew, and a link to the file."""
     parts = []
     for cell in json.loads(path.read_text())["cells"]:
         source = "".join(cell["source"])
-        parts.append(source if cell["cell_type"] == "markdown" else f"```python\n{source}\n```")
+        if cell["cell_type"] == "markdown":
+            parts.append(FORMULA.sub(formula, source) if KATEX else source)
+        else:
+            parts.append(f"```python\n{source}\n```")
         for output in cell.get("outputs", []):
             data = output.get("data", {})
             if "image/png" in data:
