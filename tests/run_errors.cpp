@@ -13,6 +13,7 @@
 #include <doctest/doctest.h>
 
 #include "../bench/error_scenes.hpp"
+#include "support/counting_executor.hpp"
 #include "support/generators.hpp"
 #include "support/listed_survey.hpp"
 #include "support/relative.hpp"
@@ -244,6 +245,12 @@ TEST_CASE(
   const EchoErrors several = errors_between(truth, found, {.clusters = 50, .threads = 3});
   CHECK(single.pairs == several.pairs);
   for (std::size_t f = 0; f < error_figure_count; ++f) CHECK(single.figures[f].high == several.figures[f].high);
+  support::CountingExecutor executor;  // which may end the work between its calls
+  const EchoErrors alone = errors_between(truth, found, {.clusters = 700, .length = 1, .threads = 1}),
+                   executed = errors_between(truth, found, {.clusters = 700, .length = 1, .executor = executor});
+  CHECK(executor.calls() > 2);
+  CHECK(alone.pairs == executed.pairs);
+  CHECK(alone.figures[0].high == executed.figures[0].high);
   CHECK_THROWS_AS((void)errors_between(truth, other), std::invalid_argument);
   CHECK_THROWS_AS((void)errors_between(truth, shorter), std::invalid_argument);
   CHECK_THROWS_AS((void)errors_between(truth, found, {.clusters = 1}), SettingError);

@@ -138,6 +138,8 @@ class Session {
     const RunSummary all = play_all(simulation, *inputs, parent, again);
     pages_.finish(all.complete);
     if (all.complete && all.echoes == 0 && all.pulses() > 0) explain_no_points(*simulation);
+    if (!all.complete)
+      notes_.note("stopped: files are complete up to there; the same command with --resume continues the run");
     notes_.note(left_out_.notes(options_.las_1_0));
     if (all.complete && all.echoes > 0 && !empty_legs_.empty())
       notes_.warn("no points from leg " + empty_legs_ +

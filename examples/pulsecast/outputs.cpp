@@ -208,12 +208,14 @@ struct LegFiles::Inside {
   std::optional<io::MissPoints> miss_points{};
   std::unique_ptr<PointFile> map{};
   std::vector<Shot> shots{};
+  bool in_scans = false;  // also of pulses without echoes
 };
 
 LegFiles::LegFiles(const fs::path& folder, const std::string& prefix, const Options& o, double start_time,
                    const std::vector<std::string>& channels)
     : inside_(new Inside{.trajectory =
                              io::TrajectoryWriter(folder / (prefix + "_trajectory.txt"), {.start_time = start_time})}) {
+  inside_->in_scans = point_format(o.format).in_scans;
   for (const fs::path& path : point_files(folder, prefix, o, channels)) {
     std::error_code error;
     if (o.format == "kitti") fs::remove_all(path, error);  // the folder that a run before left
@@ -251,7 +253,7 @@ void LegFiles::operator()(const EchoBatch& batch) {
 }
 
 bool LegFiles::reads_empty_shots() const noexcept {
-  return inside_->pulses || inside_->misses || inside_->miss_points || inside_->map;
+  return inside_->in_scans || inside_->pulses || inside_->misses || inside_->miss_points || inside_->map;
 }
 
 void LegFiles::add_trajectory(const helios::SurveyLeg& leg, Tick start, double interval) {
@@ -286,7 +288,8 @@ namespace {
 
 class Picture final : public WrittenFile<io::ImageWriter> {
  public:
-  Picture(const fs::path& path, const helios::SurveySettings& survey) : WrittenFile(path, io::ImageSettings{.frame_on = io::FrameOn::standing}) {
+  Picture(const fs::path& path, const helios::SurveySettings& survey)
+      : WrittenFile(path, io::ImageSettings{.frame_on = io::FrameOn::standing}) {
     for_each_raster(survey, [this](const Raster& raster, const Placement& placement) {
       writer_.add_ground(raster, hillshade(raster), placement);
     });

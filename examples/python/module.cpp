@@ -126,10 +126,11 @@ py::dict dict_of(const EchoErrors& errors) {
 
 py::dict errors_of(const Simulation& simulation, Whole<"errors clusters"> clusters, Whole<"errors length"> length,
                    Whole<"errors seed"> seed, Whole<"errors threads", unsigned> threads) {
-  const RunErrors errors = [&] {
-    const py::gil_scoped_release release;
-    return simulation.errors({.seed = seed, .clusters = clusters, .length = length, .threads = threads});
-  }();
+  RunErrors errors;
+  python::interruptible([&](const std::stop_token& stop) {
+    python::InterruptibleThreads executor(threads, stop);
+    errors = simulation.errors({.seed = seed, .clusters = clusters, .length = length, .executor = executor});
+  });
   py::dict parts;
   for (const ErrorsByClass& part : errors.parts) {
     py::dict classes;
@@ -148,10 +149,11 @@ py::tuple chosen(const Simulation& simulation, std::optional<double> range, std:
                  Whole<"choose length"> length, Whole<"choose seed"> seed, Whole<"choose threads", unsigned> threads) {
   const Accuracy accuracy{range.value_or(Accuracy::any), position.value_or(Accuracy::any),
                           intensity.value_or(Accuracy::any), echoes};
-  const SettingsChoice choice = [&] {
-    const py::gil_scoped_release release;
-    return simulation.choose(accuracy, {.seed = seed, .clusters = clusters, .length = length, .threads = threads});
-  }();
+  SettingsChoice choice;
+  python::interruptible([&](const std::stop_token& stop) {
+    python::InterruptibleThreads executor(threads, stop);
+    choice = simulation.choose(accuracy, {.seed = seed, .clusters = clusters, .length = length, .executor = executor});
+  });
   const auto overrides = helios::ReceiverOverrides::of(choice.values);
   py::dict known;
   known["reached"] = choice.reached;

@@ -225,7 +225,7 @@ class RunFiles {
     else
       file.file = point_file(path, whole_run, o, start);
     if (points && o.misses_at) file.misses.emplace(io::MissSettings{.range = *o.misses_at});
-    reads_empty_shots_ = reads_empty_shots_ || o.geojson || file.misses;
+    reads_empty_shots_ = reads_empty_shots_ || o.geojson || file.misses || (points && points->in_scans);
     files_.push_back(std::move(file));
   }
 
@@ -364,15 +364,9 @@ void write_batch(const python::Batch& batch, const py::object& output, const std
   require_held(request);
   const Replay replay(batch);
   const std::unique_ptr<RunFiles> files = files_of(batch.survey.cast<const Simulation&>(), request);
-  std::stop_source stopping;
-  python::InterruptWatch watch(stopping);
-  watch.during([&] {
-    if (replay(stopping.get_token(), *files)) files->close();
+  python::interruptible([&](const std::stop_token& stop) {
+    if (replay(stop, *files)) files->close();
   });
-  if (watch.interrupted()) {
-    PyErr_SetNone(PyExc_KeyboardInterrupt);
-    throw py::error_already_set();
-  }
   files->warn_of_notes();
 }
 
@@ -404,6 +398,14 @@ class FileRun {
     const std::function<void(const EchoBatch&)> to_batches = std::cref(sink);
     return run(options, to_sink_ ? &to_batches : nullptr);
   }
+  /// Completes the files, after an interrupt, too. After an error of a callback it is not called: there is none.
+  void close() const {
+    if (files_) files_->close();
+  }
+  /// Warns of what was noted. Requires the GIL.
+  void warn() const {
+    if (files_) files_->warn_of_notes();
+  }
 
  private:
   /// Sink of files, and of batches for a callback.
@@ -418,11 +420,7 @@ class FileRun {
   };
 
   RunSummary run(const RunOptions& options, const std::function<void(const EchoBatch&)>* to_batches) const {
-    const RunSummary summary = pulsecast::run(simulation_.survey(), options, Both{*files_, to_batches});
-    files_->close();  // after an interrupt, too: what is there is complete
-    const py::gil_scoped_acquire gil;
-    files_->warn_of_notes();
-    return summary;
+    return pulsecast::run(simulation_.survey(), options, Both{*files_, to_batches});
   }
 
   const Simulation& simulation_;

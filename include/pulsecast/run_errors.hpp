@@ -59,9 +59,11 @@ struct ErrorSampleOptions {
   PulseIndex length = 4;                                    ///< consecutive slots in a cluster, at least 1
   PulseIndex first = 0;                                     ///< first slot of the run
   PulseIndex end = std::numeric_limits<PulseIndex>::max();  ///< one past its last slot, at most the survey's size
-  double reach = 0.3;    ///< greatest difference in range of equal echoes: half a pulse length of 4 ns [m]
-  unsigned threads = 0;  ///< threads, at most `max_threads`; 0: all of the machine
+  double reach = 0.3;      ///< greatest difference in range of equal echoes: half a pulse length of 4 ns [m]
+  unsigned threads = 0;    ///< threads, at most `max_threads`; 0: all of the executor or the hardware
+  ExecutorRef executor{};  ///< runs the work, as in `RunOptions`
 
+  [[nodiscard]] Workers workers() const noexcept { return {executor, threads}; }  ///< threads of the work
   void validate() const {
     require_within("ErrorSampleOptions::clusters", clusters, 2, 1e9, "");
     require_within("ErrorSampleOptions::length", length, 1, 1e9, "");
@@ -250,7 +252,13 @@ class ErrorSample {
 
   /// Simulates the clusters by a survey of the same slots.
   [[nodiscard]] std::vector<Sample> simulate(const AnySurvey& survey) const {
-    return sample(survey, blocks_, options_.threads);
+    constexpr std::size_t at_once = 512;  // in between, an executor may end the work
+    std::vector<Sample> all;
+    for (std::size_t first = 0; first < blocks_.size(); first += at_once)
+      for (Sample& one : sample(survey, std::span(blocks_).subspan(first, std::min(at_once, blocks_.size() - first)),
+                                options_.workers()))
+        all.push_back(std::move(one));
+    return all;
   }
 
   /// Errors of the echoes of one survey against those of another.

@@ -22,14 +22,15 @@ fail() {
 # Sends a signal to a run after so many milliseconds: signalled SIGNAL TIME OUTPUT FORMAT [OPTION...]. Sets `status`, and fails if the run
 # had come to its end before. Adapts `duration`, as the load of the machine changes: moments shall come neither too late nor too early.
 signalled() {
-  local pid
-  "$program" "${options[@]}" --output "$3" --format "$4" "${@:5}" &
+  local pid words=("${options[@]}")
+  [ "$1" = INT ] && unset 'words[-1]' # --quiet
+  "$program" "${words[@]}" --output "$3" --format "$4" "${@:5}" > /dev/null 2> said &
   pid=$!
   sleep "$(printf '%d.%03d' $(($2 / 1000)) $(($2 % 1000)))"
   kill -"$1" $pid 2> /dev/null
   wait $pid 2> /dev/null
   status=$?
-  [ $status = 1 ] && fail "a run failed"
+  [ $status = 1 ] && fail "a run failed: $(cat said)"
   [ -e "$3" ] || duration=$((duration + duration / 10 + 1))
   [ $status = 0 ] && duration=$((duration > 20 ? duration - duration / 20 : duration))
   [ $status != 0 ]
@@ -72,6 +73,7 @@ for ((n = 0; n < 100; ++n)); do
 done
 [ $n -lt 100 ] || fail "no run could be interrupted"
 [ $status = 3 ] || fail "it ended with $status when it was interrupted"
+grep -q -- "--resume continues" said || fail "it did not say how to go on when it was interrupted"
 [ -z "$(find interrupted -name '*.part')" ] || fail "files are left open by a run that was interrupted"
 find interrupted -name '*_points.xyz' -exec awk 'NF != columns && columns { exit 1 } { columns = NF }' {} ';' || fail "a line is not whole"
 [ -z "$(find interrupted -name '*_points.xyz' -size +0 -exec tail -c 1 {} ';' | tr -d '\n')" ] || fail "a last line is not whole"

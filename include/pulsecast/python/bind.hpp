@@ -66,6 +66,41 @@ class InterruptWatch {
   bool on_main_ = false;
 };
 
+/// Thrown in work that Ctrl-C ends, in place of its results.
+struct Stopped {};
+
+/// Executor of work that Ctrl-C ends: `for_each` throws `Stopped` when it is asked to.
+class InterruptibleThreads {
+ public:
+  /// `count` threads, as in `thread_count`, until `stop` is requested.
+  InterruptibleThreads(unsigned count, std::stop_token stop) : threads_(thread_count(count)), stop_(std::move(stop)) {}
+  [[nodiscard]] unsigned threads() const noexcept { return threads_; }
+  void for_each(std::size_t count, const IndexTask& task) const {
+    if (!stop_.stop_requested()) for_each_index(count, threads_, task);
+    if (stop_.stop_requested()) throw Stopped{};
+  }
+
+ private:
+  unsigned threads_;
+  std::stop_token stop_;
+};
+
+/// Calls `work(stop)` without the GIL, which may throw `Stopped` once a stop is requested by Ctrl-C; that is raised.
+template <class Work>
+void interruptible(const Work& work) {
+  std::stop_source stopping;
+  InterruptWatch watch(stopping);
+  watch.during([&] {
+    try {
+      work(stopping.get_token());
+    } catch (const Stopped&) {  // what the handler of a signal raised is thrown below
+    }
+  });
+  if (!watch.interrupted()) return;
+  PyErr_SetNone(PyExc_KeyboardInterrupt);
+  throw pybind11::error_already_set();
+}
+
 /// Arguments of a survey's `run`, as in Python.
 struct RunRequest {
   unsigned threads = 0;                          ///< as in `RunOptions`
@@ -158,9 +193,13 @@ template <class Run>
     if (has_callback && is_due) deliver();
   };
   RunSummary summary;
-  watch.during([&] { summary = run(options, sink); });
+  watch.during([&] {
+    summary = run(options, sink);
+    if (has_callback && rows.pulses() > 0) deliver();
+    if constexpr (requires { run.close(); }) run.close();
+  });
   const bool interrupted = watch.interrupted();
-  if (has_callback && rows.pulses() > 0) deliver();
+  if constexpr (requires { run.warn(); }) run.warn();
   Batch result = taken();
   result.summary = summary;
   if (!interrupted) return result;

@@ -3,7 +3,7 @@
 #ifndef PULSECAST_PYTHON_RAY_QUERIES_HPP
 #define PULSECAST_PYTHON_RAY_QUERIES_HPP
 
-#include <pulsecast/python/detail/exceptions.hpp>
+#include <pulsecast/python/bind.hpp>
 #include <pulsecast/python/detail/ray_arguments.hpp>
 #include <pulsecast/python/detail/rows.hpp>
 #include <pulsecast/python/detail/whole.hpp>
@@ -64,13 +64,29 @@ template <class World>
   return row;
 }
 
-/// Calls `task(block, first, end)` for blocks of rays on several threads, without the GIL.
+/// Calls `work(check)` without the GIL. Ctrl-C ends the work on many rays: `check()` then throws `Stopped`.
+void with_checks(std::size_t rays, const auto& work) {
+  constexpr std::size_t few = 1 << 18;  // some tenths of a second
+  if (rays > few)
+    return interruptible([&](const std::stop_token& stop) {
+      work([&stop] {
+        if (stop.stop_requested()) throw Stopped{};
+      });
+    });
+  const pybind11::gil_scoped_release free;
+  work([] {});
+}
+
+/// Calls `task(block, first, end)` for blocks of rays on several threads, as `with_checks`.
 template <class Task>
 void for_each_block(std::size_t rays, unsigned threads, const Task& task) {
   constexpr std::size_t block = 4096;
-  const pybind11::gil_scoped_release free;
-  const std::size_t blocks = (rays + block - 1) / block;
-  for_each_index(blocks, threads, [&](std::size_t b) { task(b, b * block, std::min(rays, (b + 1) * block)); });
+  with_checks(rays, [&](const auto& check) {
+    for_each_index((rays + block - 1) / block, threads, [&](std::size_t b) {
+      check();
+      task(b, b * block, std::min(rays, (b + 1) * block));
+    });
+  });
 }
 
 /// Closest hit of each ray, a row a ray.
@@ -128,8 +144,13 @@ template <class World>
   for (std::size_t i = 0; i < beams.size(); ++i) beams[i] = rays[i];
   auto ranges = ranges_in(out, poses.shape(0), static_cast<pybind11::ssize_t>(beams.size()));
   const std::span<float> to(ranges.mutable_data(), static_cast<std::size_t>(ranges.size()));
-  const pybind11::gil_scoped_release free;
-  pulsecast::detail::run_batch<World>(scene_at, at, beams, to, threads);
+  with_checks(to.size(), [&](const auto& check) {
+    const auto checked_scene_at = [&](std::size_t pose) -> decltype(auto) {
+      check();
+      return scene_at(pose);
+    };
+    pulsecast::detail::run_batch<World>(checked_scene_at, at, beams, to, threads);
+  });
   return ranges;
 }
 

@@ -600,6 +600,20 @@ def test_ctrl_c_stops_and_leaves_what_is_whole():
     assert (pulses["pulse"] == np.arange(len(pulses))).all()
 
 
+def test_ctrl_c_ends_queries_of_many_rays_and_samples_of_errors():
+    scene = pulsecast.RaycastingScene([pulsecast.Mesh(*SQUARE)])
+    poses, rays = np.tile(np.eye(4), (40_000, 1, 1)), np.tile([0, 0, 1, 0, 0, -1.0], (1000, 1))
+    ranges = np.full((40_000, 1000), -1, np.float32)
+    threading.Timer(0.2, lambda: os.kill(os.getpid(), signal.SIGINT)).start()
+    with pytest.raises(KeyboardInterrupt):
+        scene.run_batch(poses, rays, out=ranges)
+    assert (ranges == -1).any()
+    survey = pulsecast.Simulation(pulsecast.read_survey(HERE / "long.xml", assets=[HERE]), assets=[HERE], seed=3)
+    threading.Timer(0.5, lambda: os.kill(os.getpid(), signal.SIGINT)).start()
+    with pytest.raises(KeyboardInterrupt):
+        survey.errors(clusters=1_000_000)  # minutes to the end
+
+
 def test_ctrl_c_under_asyncio_stops_at_the_second():
     async def scan():
         return own_scanner.RosetteSurvey(2_000_000_000).run(pulses=False)

@@ -130,7 +130,18 @@ def test_an_interrupted_run_leaves_files_that_are_complete_up_to_there(tmp_path)
     assert not list(tmp_path.glob("*.part*"))
 
 
-def test_a_run_that_fails_leaves_no_file_and_keeps_the_former_one(tmp_path):
+def test_scans_without_points_are_there_whatever_else_is_written(tmp_path):
+    run, options = simulation(), {"scan_rate": 1000} | START
+    run.run(output=tmp_path / "alone.kitti", **options)
+    run.run(output=[tmp_path / "beside.kitti", tmp_path / "map.geojson"], **options)
+    run.run().write(tmp_path / "written.kitti", **options)
+    scans = contents(tmp_path / "alone.kitti")
+    assert any(name.endswith(".bin") and not data for name, data in scans.items())
+    assert scans == contents(tmp_path / "beside.kitti") and scans.keys() == contents(tmp_path / "written.kitti").keys()
+
+
+@pytest.mark.parametrize("every_pulses", [100, 0])  # 0: a batch at the end alone
+def test_a_run_that_fails_leaves_no_file_and_keeps_the_former_one(every_pulses, tmp_path):
     out = tmp_path / "points.laz"
     out.write_text("former")
 
@@ -138,7 +149,7 @@ def test_a_run_that_fails_leaves_no_file_and_keeps_the_former_one(tmp_path):
         raise RuntimeError("enough")
 
     with pytest.raises(RuntimeError, match="enough"):
-        simulation().run(output=[out, tmp_path / "page.html"], callback=fail, every_pulses=100)
+        simulation().run(output=[out, tmp_path / "page.html"], callback=fail, every_pulses=every_pulses)
     assert os.listdir(tmp_path) == ["points.laz"] and out.read_text() == "former"
     simulation().run(output=out)
     assert out.read_bytes()[:4] == b"LASF"
