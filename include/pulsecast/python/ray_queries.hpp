@@ -6,8 +6,6 @@
 #include <pulsecast/python/bind.hpp>
 #include <pulsecast/python/detail/ray_arguments.hpp>
 #include <pulsecast/python/detail/rows.hpp>
-#include <pulsecast/python/detail/whole.hpp>
-#include <pulsecast/scene/object_attributes.hpp>
 
 /// Ray queries of scenes for Python: arrays of rays in, arrays of hits out.
 ///
