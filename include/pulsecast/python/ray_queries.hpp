@@ -5,7 +5,6 @@
 
 #include <pulsecast/python/bind.hpp>
 #include <pulsecast/python/detail/ray_arguments.hpp>
-#include <pulsecast/python/detail/rows.hpp>
 
 /// Ray queries of scenes for Python: arrays of rays in, arrays of hits out.
 ///
