@@ -29,6 +29,7 @@
 #include <pulsecast/python/bind.hpp>
 
 #include "../pulsecast/clock.hpp"
+#include "../pulsecast/loading.hpp"
 #include "../pulsecast/notes.hpp"
 #include "../pulsecast/outputs.hpp"
 #include "../pulsecast/pages.hpp"
@@ -40,6 +41,8 @@ namespace py = pybind11;
 using namespace pulsecast;
 using namespace py::literals;
 using helios::Simulation;
+using python::RunRequest;
+using CompiledLeg = helios::CompiledSurvey::Leg;
 
 namespace {
 
@@ -379,8 +382,7 @@ void write_batch(const python::Batch& batch, const py::object& output, const std
 /// Run of a simulation, to files too if there are any.
 class FileRun {
  public:
-  FileRun(const Simulation& simulation, const python::RunRequest& request, const py::object& output,
-          const py::kwargs& options)
+  FileRun(const Simulation& simulation, const RunRequest& request, const py::object& output, const py::kwargs& options)
       : simulation_(simulation), to_sink_(output.is_none() || !request.callback.is_none()) {
     if (output.is_none()) {
       if (options.size() > 0)
@@ -403,6 +405,15 @@ class FileRun {
     if (!files_) return pulsecast::run(simulation_.survey(), options, sink);
     const std::function<void(const EchoBatch&)> to_batches = std::cref(sink);
     return run(options, to_sink_ ? &to_batches : nullptr);
+  }
+
+  /// Warns of a run of all slots, or of those of whole legs, without points.
+  void after(const RunRequest& request, const RunSummary& summary) const {
+    const auto& legs = simulation_.compiled().legs;
+    const bool begins = request.first == 0 || std::ranges::count(legs, request.first, &CompiledLeg::first) > 0;
+    const bool ends = !request.end || std::ranges::count(legs, *request.end, &CompiledLeg::end) > 0;
+    if (summary.echoes > 0 || request.stride > 1 || !begins || !ends) return;
+    if (const std::string why = why_no_points(simulation_, summary, request.first); !why.empty()) warn({why});
   }
 
  private:
@@ -447,7 +458,7 @@ void warn(const std::vector<std::string>& texts) {
 }
 
 void bind_run_to_files(py::class_<Simulation>& simulation) {
-  const auto runner = [](const Simulation& s, const python::RunRequest& request, const py::object& output,
+  const auto runner = [](const Simulation& s, const RunRequest& request, const py::object& output,
                          const py::kwargs& options) { return FileRun(s, request, output, options); };
   python::bind_run<py::object, py::kwargs>(
       simulation, runner, [](const Simulation& s) { return s.points(); },

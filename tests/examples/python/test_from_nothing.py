@@ -6,6 +6,7 @@ import copy
 import math
 import pickle
 import re
+import warnings
 from pathlib import Path
 
 import numpy as np
@@ -241,6 +242,25 @@ def test_a_block_flight_covers_its_area_with_its_overlap():
         pulsecast.plan_block_flight(pulsecast.BlockFlight(area=((0, 0, 0), (9, 9, 0)), overlap=1))
     with pytest.raises(TypeError, match="expected BlockFlight, not 3"):
         pulsecast.plan_block_flight(3)
+
+
+def test_a_run_without_points_says_why_at_the_line_of_its_caller(tmp_path):
+    below = flight((0, 0, -80), (0, 50, -80), (0, 100, -80))
+    run = pulsecast.Simulation(below, meshes=[pulsecast.Mesh(*SQUARE)])
+    middle = int(run.legs[1]["first"])
+    why = r"no points: leg {} begins at \(0.0, {}.0, -80.0\) m, and the scene extends from \(-200.0, -200.0, 0.0\) to \(200.0, 200.0, 0.0\) m"
+    for number, asked in ((0, {}), (0, {"callback": print}), (0, {"output": tmp_path / "no.xyz"}), (0, {"end": middle}), (1, {"first": middle})):
+        with pytest.warns(UserWarning, match=why.format(number, 50 * number)) as told:
+            run.run(**asked)
+        assert len(told) == 1 and told[0].filename == __file__
+    with pytest.warns(UserWarning, match="no points: the scene is empty"):
+        pulsecast.Simulation(below).run()
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        for asked in ({"first": 1}, {"end": middle - 1}, {"stride": 2}):  # of a part, which may be empty on purpose
+            run.run(**asked)
+        with pytest.raises(UserWarning, match="no points"):
+            run.run()
 
 
 # --------------------------------------------------------------------------------------------------------- trajectories
