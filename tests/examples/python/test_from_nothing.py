@@ -151,9 +151,15 @@ def test_instruments_of_the_catalogue_have_names():
     assert pulsecast.platform("tripod").kind == "stationary"
     known = pulsecast.catalogue()
     assert {one.id for one in known["scanners"]} > {"riegl_vz400", "vlp16", "gedi"} and len(known["platforms"]) > 10
-    with pytest.raises(ValueError, match="^the catalogue has no scanner 'riegl_vz40'; did you mean 'riegl_vz400'\\?$"):
+    for name in ("VZ-400", "VZ400", "vz_400", "RIEGL VZ-400", "Riegl_VZ400"):
+        assert pulsecast.scanner(name).id == "riegl_vz400", name
+    assert pulsecast.scanner("VUX-1UAV") == pulsecast.scanner("vux-1uav") and pulsecast.platform("Tripod").id == "tripod"
+    for name, near in (("vz40O", "riegl_vz400"), ("vux-1", "vux-1uav")):
+        with pytest.raises(ValueError, match=f"^the catalogue has no scanner '{name}'; did you mean .*{near}'.*\\?$"):
+            pulsecast.scanner(name)
+    with pytest.raises(ValueError, match="^the catalogue has no scanner 'riegl_vz40'; did you mean 'riegl_vz400' or 'riegl_vz400i'\\?$"):
         pulsecast.scanner("riegl_vz40")
-    with pytest.raises(ValueError, match="no platform 'xyz'; known names: .*, tripod, "):
+    with pytest.raises(ValueError, match=r"no platform 'xyz'; catalogue\(\) has all$"):
         pulsecast.platform("xyz")
 
 
@@ -164,8 +170,8 @@ def test_documents_of_one_s_own_come_before_the_catalogue(tmp_path):
         (tmp_path / "data" / f"scanners_{name}.xml").write_text(text)
     assert pulsecast.scanner("vz400", assets=[tmp_path]).pulse_rates == [7] and pulsecast.scanner("vz400").pulse_rates != [7]
     assert pulsecast.scanner("own_one", assets=[str(tmp_path)]).pulse_rates == [9]
-    with pytest.raises(ValueError, match="no scanner 'one'"):  # of two makers
-        pulsecast.scanner("one", assets=[tmp_path])
+    with pytest.raises(ValueError, match=r"no scanner 'ONE'; did you mean '(own|other)_one' or '(own|other)_one'\?"):  # of two makers
+        pulsecast.scanner("ONE", assets=[tmp_path])
 
 
 def test_angles_are_also_in_degrees():
