@@ -406,3 +406,5 @@ def test_the_examples_of_the_page_run():
     for block in blocks:
         exec(block, space)  # each goes on from those before
     assert len(space["points"]) > 1000
+        if block is blocks[0]:
+            assert set(space["points"]["object"]) == {0, 1, 2, 3}  # as it says
