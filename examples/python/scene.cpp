@@ -12,6 +12,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <string>
 #include <utility>
 
 #include <pybind11/stl.h>
@@ -23,6 +24,7 @@
 #include <pulsecast/python/ray_queries.hpp>
 #include <pulsecast/scene/scene.hpp>
 
+#include "outputs.hpp"
 #include "settings.hpp"
 
 namespace py = pybind11;
@@ -65,12 +67,27 @@ NumberArray pose_columns(const py::object& given, const std::string& name) {
   return numbers_of(py::module_::import("numpy").attr("column_stack")(columns), name);
 }
 
+/// Warns of roll, pitch and yaw in degrees: from 0, or from one pose to the next, they turn by more than a turn; those
+/// of a platform tilt beyond the vertical.
+void ask_for_degrees(const NumberArray& rows, bool platform, const std::string& name) {
+  for (py::ssize_t i = 0; i < rows.shape(0); ++i)
+    for (py::ssize_t k = 4; k < 7; ++k) {
+      const double angle = rows.at(i, k), before = i > 0 ? rows.at(i - 1, k) : 0;
+      const bool tilts = platform && ((k == 4 && std::fabs(angle) > max_angle) ||
+                                      (k == 5 && std::fabs(std::remainder(angle, 2 * pi)) > pi / 2 + 1e-6));
+      if (!tilts && !(std::fabs(angle - before) > max_angle)) continue;
+      return warn({name + ": " + std::array{"roll", "pitch", "yaw"}[static_cast<std::size_t>(k - 4)] + " of row " +
+                   std::to_string(i) + " is " + text::to_text(angle) + " rad: given in degrees, not radians?"});
+    }
+}
+
 /// Poses of rows of 4, 7 or 8 numbers, as `trajectory_poses`; those of 4 are not turned.
-std::vector<TimedPose> timed_poses_of(const NumberArray& rows, const std::string& name) {
+std::vector<TimedPose> timed_poses_of(const NumberArray& rows, const std::string& name, bool platform) {
   const py::ssize_t columns = rows.ndim() == 2 ? rows.shape(1) : 0;
   if (columns != 4 && columns != 7 && columns != 8)
     throw SettingError(name + " (columns)", static_cast<double>(columns), "",
                        "4, 7 or 8: time, x, y, z, and roll, pitch, yaw or a quaternion x, y, z, w");
+  if (columns == 7) ask_for_degrees(rows, platform, name);
   std::vector<TimedPose> poses;
   for (py::ssize_t i = 0; i < rows.shape(0); ++i) {
     const double* const row = rows.data(i);
@@ -236,7 +253,7 @@ Simulation::Mesh mesh_of(const NumberArray& vertices, const py::object& triangle
   if (!all.empty()) mesh.attributes = attributes(std::move(all));
   if (!motion.is_none())
     mesh.motion =
-        std::make_shared<const PartMotion>(timed_poses_of(pose_columns(motion, "Mesh::motion"), "Mesh::motion"));
+        std::make_shared<const PartMotion>(timed_poses_of(pose_columns(motion, "Mesh::motion"), "Mesh::motion", false));
   mesh.data.validate();
   return mesh;
 }
@@ -356,7 +373,7 @@ void bind_raycasting_scene(py::module_& m) {
 
 std::vector<TimedPose> trajectory_poses(const py::object& array, const std::string& name) {
   const NumberArray rows = pose_columns(array, name);
-  std::vector<TimedPose> poses = timed_poses_of(rows, name);
+  std::vector<TimedPose> poses = timed_poses_of(rows, name, true);
   return rows.shape(1) == 4 ? with_headings(std::move(poses)) : poses;
 }
 

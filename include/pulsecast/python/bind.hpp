@@ -114,12 +114,17 @@ namespace detail {
   return kept;
 }
 
+/// Run that is told of its end, with the GIL, unless it was interrupted.
+template <class Run>
+concept LooksBack = requires(const Run& run, const RunRequest& request, const RunSummary& summary) {
+  { run.after(request, summary) } -> std::same_as<void>;
+};
+
 }  // namespace detail
 
 /// Calls `run(options, sink)` without the GIL until done or interrupted, and keeps its points.
 /// Rethrows Python exceptions of callbacks and signal handlers; that of Ctrl-C as `Interrupted`,
-/// with the result. Throws a `TypeError` for a callback that is not callable, and as `kept_by`. Calls
-/// `run.after(request, summary)`, if there is such, with the GIL after a run that was not interrupted.
+/// with the result. Throws a `TypeError` for a callback that is not callable, and as `kept_by`. See `LooksBack`.
 template <class Run>
 [[nodiscard]] Batch run(const RunRequest& request, io::PointSettings points, const Run& run) {
   request.validate();
@@ -164,7 +169,7 @@ template <class Run>
   if (has_callback && rows.pulses() > 0) deliver();
   Batch result = taken();
   result.summary = summary;
-  if constexpr (requires { run.after(request, summary); })
+  if constexpr (detail::LooksBack<Run>)
     if (!interrupted) run.after(request, summary);
   if (!interrupted) return result;
   raise(Exceptions{}.interrupted, "the survey was stopped", std::pair{"result", pybind11::cast(std::move(result))});

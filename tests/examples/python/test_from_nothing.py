@@ -298,14 +298,61 @@ def test_legs_follow_their_parts_of_a_trajectory():
     assert list(path["leg"]) == [0, 0, 0, 1, 1, 1, 1, 1]
     assert np.abs(path["x"] - [5, 10, 15, 20, 25, 30, 35, 40]).max() < 1e-9
     assert np.abs(path["yaw"] - np.pi / 2).max() < 1e-9  # heads east, along its path
-    with pytest.raises(pulsecast.SettingError, match="leg 0: tStart to tEnd.*within the poses, from 0 s to 4 s"):
+    with pytest.raises(pulsecast.SettingError, match="^leg 0: tStart to tEnd is from 5 s to 6 s, but must be within the poses, from 0 s to 4 s$"):
         driven(poses, (5, 6))
+    with pytest.warns(UserWarning, match="^drive: the window ends after the last pose, at 4 s$"):
+        driven(poses, (1, 40))
+    with pytest.warns(UserWarning, match="^drive: the window begins before the first pose, at 0 s$"):
+        driven(poses, (-1, 2))
 
 
 def test_attitudes_may_be_quaternions():
     half = 0.35
     east = driven([[0, 0, 0, 60, 0, 0, -math.sin(half), math.cos(half)], [1, 0, 9, 60, 0, 0, -math.sin(half), math.cos(half)]])
     assert np.abs(east.trajectory(0.5)["yaw"] - 2 * half).max() < 1e-9
+
+
+def test_angles_in_degrees_are_asked_about():
+    level = np.column_stack([np.arange(5.0), np.zeros(5), 10 * np.arange(5.0), np.full(5, 60.0), np.zeros((5, 3))])
+    for column, angles, says in ((6, 90.0, "yaw of row 0 is 90 rad"), (6, [-3, 3, -3, 3, 183], "yaw of row 4 is 183 rad"),
+                                 (5, 3.0, "pitch of row 0 is 3 rad"), (4, [0, 1, 2, 3, 8.5], "roll of row 4 is 8.5 rad")):
+        poses = level.copy()
+        poses[:, column] = angles
+        with pytest.warns(UserWarning, match=re.escape(f"trajectories['drive']: {says}: given in degrees, not radians?")):
+            driven(poses)
+        if column != 5:
+            continue
+        pulsecast.Mesh(*SQUARE, motion=poses)  # may turn over
+    with pytest.warns(UserWarning, match="Mesh::motion: yaw of row 1 is 90 rad: given in degrees"):
+        pulsecast.Mesh(*SQUARE, motion=[[0] * 7, [1, 0, 0, 0, 0, 0, 90]])
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        for column, angles in ((6, np.linspace(0, 20, 5)), (6, [3, -3, 3, 6.2, 0]), (5, [6.28, 0, -1.5, 0, 1.5]), (4, [3, -3, 3, 3.3, 6.28])):
+            poses = level.copy()
+            poses[:, column] = angles
+            driven(poses)  # turns on and on; within a turn either way
+
+
+def test_angles_of_settings_in_degrees_are_asked_about():
+    def told(**platform):
+        survey = flight(*LINE, **platform)
+        with warnings.catch_warnings(record=True) as notes:
+            warnings.simplefilter("always")
+            pulsecast.Simulation(survey, meshes=[pulsecast.Mesh(*SQUARE)])
+        return [str(note.message) for note in notes]
+
+    down = pulsecast.platform("satellite").mount
+    turned = copy.deepcopy(down)
+    turned.rotation.turns.append(pulsecast.AxisTurn(axis="x", angle=90))
+    assert told(mount=turned) == ["rot 2: angle_deg is 5156.620156, 14.323945 turns: given in degrees, not radians?"]
+    assert told(mount_error=pulsecast.MountErrorSettings(pitch=2)) == ["pitch_deg is 114.591559, 0.31831 turns: given in degrees, not radians?"]
+    assert len(told(pose_errors=pulsecast.PoseErrorSettings(angular_jitter=1, attitude_drift=(1, 0, 2), boresight_deviation=(0, 3, 0)))) == 4
+    for noise in (pulsecast.NoiseSettings(deviation=2), pulsecast.NoiseSettings(distribution="uniform", low=-2, high=0)):
+        [note] = told(attitude_noise=[None, noise, None])
+        assert note.startswith("attitudeYNoise is 114.59"), note
+    turned.rotation.turns[-1].angle_deg = 36000
+    assert told(mount=turned, mount_error=pulsecast.MountErrorSettings(pitch=0.4), attitude_noise=[None, pulsecast.NoiseSettings(deviation=0.1), None],
+                position_noise=[None, pulsecast.NoiseSettings(deviation=2), None]) == []
 
 
 @pytest.mark.parametrize(("poses", "says"), [
@@ -405,6 +452,6 @@ def test_the_examples_of_the_page_run():
     space: dict[str, object] = {}
     for block in blocks:
         exec(block, space)  # each goes on from those before
-    assert len(space["points"]) > 1000
         if block is blocks[0]:
             assert set(space["points"]["object"]) == {0, 1, 2, 3}  # as it says
+    assert len(space["points"]) > 1000
