@@ -111,6 +111,8 @@ FileRequest request_of(const py::object& output, const std::vector<std::string>&
     request.paths.push_back(path_of(output));
   for (const auto& [name, value] : options) {
     const auto keyword = name.cast<std::string>();
+    if (const std::string right = keyword_of(keyword); right != keyword)
+      throw py::value_error(keyword + " is no option of files; did you mean '" + right + "'?");
     if (keyword == "format" && !value.is_none())
       request.format = text::lower(std::string(py::str(value)));
     else

@@ -273,8 +273,10 @@ def test_hits_have_the_attributes_of_their_objects():
 
 def test_an_attribute_of_the_name_of_a_column_is_refused(survey):
     mesh = pulsecast.Mesh(*SQUARE, object=9, attributes={"intensity": 4})
-    with pytest.raises(pulsecast.SettingError, match="intensity"):
+    with pytest.raises(pulsecast.SettingError, match="^columns: 'intensity' is there twice: expected .* attributes without the name of a column$"):
         simulation(survey, meshes=[mesh]).run()
+    with pytest.raises(pulsecast.SettingError, match="^columns: 'range' is there twice"):
+        simulation(survey).run(columns=["range", "x", "range"])
 
 
 def test_points_by_column_are_those_of_the_rows(survey):
