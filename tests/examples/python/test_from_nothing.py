@@ -442,6 +442,14 @@ def test_what_is_of_another_type_is_refused(asked, says):
         pulsecast.Mesh(*SQUARE, **asked)
 
 
+def test_what_is_no_obj_file_is_told(tmp_path):
+    (tmp_path / "a.gltf").write_text('{"asset": {"version": "2.0"}}')
+    survey = flight(*LINE)
+    survey.scene.parts = [pulsecast.PartSettings(source=pulsecast.ObjSource(files=[str(tmp_path / "a.gltf")]))]
+    with pytest.raises(pulsecast.FileError, match=r"a\.gltf: holds no vertex: expected an OBJ file"):
+        pulsecast.Simulation(survey)
+
+
 # ----------------------------------------------------------------------------------------------------------------- page
 
 def test_the_examples_of_the_page_run():
