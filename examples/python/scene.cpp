@@ -230,14 +230,15 @@ void set_objects(const py::object& given, Simulation::Mesh& mesh) {
   if (objects.ndim() == 0) mesh.object = std::exchange(mesh.objects, {}).front();
 }
 
-Simulation::Mesh mesh_of(const NumberArray& vertices, const py::object& triangles, const py::object& object,
+Simulation::Mesh mesh_of(const py::object& vertices, const py::object& triangles, const py::object& object,
                          const py::object& reflectance, const py::object& classification, bool ground,
                          const std::optional<NumberArray>& texture, const std::optional<SmoothInterface>& smooth,
                          const std::optional<std::array<double, 3>>& colour, const std::optional<Picture>& picture,
                          const std::optional<std::map<std::string, double>>& attributes_given, const py::object& law,
                          std::optional<double> cutoff, const std::optional<NumberArray>& placements,
                          const py::object& motion) {
-  Simulation::Mesh mesh{.data = mesh_data_of(vertices, triangles), .material = {.ground = ground}};
+  Simulation::Mesh mesh{.data = mesh_data_of(numbers_of(vertices, "Mesh vertices"), triangles),
+                        .material = {.ground = ground}};
   if (texture) set_texture(*texture, mesh.data);
   if (smooth) mesh.material.smooth = *smooth;
   if (!law.is_none()) mesh.material.law = law_of(law);
@@ -270,14 +271,16 @@ std::vector<RaycastingScene::Part> parts_of(const std::vector<Simulation::Mesh>&
   return all;
 }
 
-std::unique_ptr<RaycastingScene> raycasting_scene_of(const std::vector<Simulation::Mesh>& meshes,
+std::unique_ptr<RaycastingScene> raycasting_scene_of(const py::object& given,
                                                      python::Whole<"RaycastingScene threads", unsigned> threads) {
+  const std::vector<Simulation::Mesh> meshes = meshes_of(given);
   const py::gil_scoped_release free;
   return std::make_unique<RaycastingScene>(parts_of(meshes, threads));
 }
 
-std::unique_ptr<RaycastingScene> with_meshes(const RaycastingScene& scene, const std::vector<Simulation::Mesh>& meshes,
+std::unique_ptr<RaycastingScene> with_meshes(const RaycastingScene& scene, const py::object& given,
                                              python::Whole<"with_meshes threads", unsigned> threads) {
+  const std::vector<Simulation::Mesh> meshes = meshes_of(given);
   const py::gil_scoped_release free;
   return std::make_unique<RaycastingScene>(scene.with_parts(parts_of(meshes, threads), threads.value));
 }
@@ -358,7 +361,7 @@ void bind_raycasting_scene(py::module_& m) {
       "Meshes to be asked by rays, without a survey. Part i is mesh i, if each has one placement.");
   scene
       .def(py::init(&raycasting_scene_of), "meshes"_a, py::kw_only(), "threads"_a = 0,
-           "meshes: list of Mesh. threads: for building the index; 0: all. Raises SettingError.")
+           "meshes: a Mesh, or several. threads: for building the index; 0: all. Raises SettingError.")
       .def("with_meshes", &with_meshes, "meshes"_a, py::kw_only(), "threads"_a = 0,
            "RaycastingScene with more meshes after those of this one, whose memory it shares.")
       .def_property_readonly(
@@ -370,6 +373,22 @@ void bind_raycasting_scene(py::module_& m) {
 }
 
 }  // namespace
+
+std::vector<Simulation::Mesh> meshes_of(const py::object& given) {
+  std::vector<Simulation::Mesh> meshes;
+  const auto add = [&](py::handle one) {
+    if (!py::isinstance<Simulation::Mesh>(one))
+      throw py::type_error("meshes: expected a Mesh or several, not " + std::string(py::repr(one)) +
+                           "; files are parts of the survey's scene");
+    meshes.push_back(one.cast<const Simulation::Mesh&>());
+  };
+  if (given.is_none()) return meshes;
+  if (py::isinstance<py::iterable>(given) && !py::isinstance<py::str>(given))
+    for (const py::handle one : py::iter(given)) add(one);
+  else
+    add(given);
+  return meshes;
+}
 
 std::vector<TimedPose> trajectory_poses(const py::object& array, const std::string& name) {
   const NumberArray rows = pose_columns(array, name);

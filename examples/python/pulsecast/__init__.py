@@ -36,6 +36,13 @@ for _made in vars(_core).values():
 def asset_folders() -> list[Path]:
     """Folder of this package with the catalogue of scanners and platforms and the spectra of materials; empty if not installed."""
     here = Path(__file__).resolve()
+        _made.__repr__ = lambda settings: _shortly(settings)
+
+
+def _shortly(settings):
+    """Settings as text that makes them again: the members that differ from their defaults."""
+    pairs = [(member.name, repr(getattr(settings, member.name)), repr(member.default_factory())) for member in dataclasses.fields(settings)]
+    return f"{type(settings).__name__}({', '.join(f'{name}={value}' for name, value, default in pairs if value != default)})"
     places = [here.parents[2] / "catalogue"] + [parent / "share" / "pulsecast" for parent in here.parents]
     return [place for place in places if (place / "data").is_dir()][:1]
 

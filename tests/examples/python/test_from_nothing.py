@@ -442,6 +442,31 @@ def test_what_is_of_another_type_is_refused(asked, says):
         pulsecast.Mesh(*SQUARE, **asked)
 
 
+def test_meshes_are_one_or_several():
+    floor, survey = pulsecast.Mesh(*SQUARE), flight(*LINE)
+    for meshes in (floor, [floor], (floor,), (mesh for mesh in [floor])):
+        assert pulsecast.Simulation(survey, meshes=meshes).triangles == 2
+    assert pulsecast.Simulation(survey, meshes=None).triangles == 0
+    assert pulsecast.RaycastingScene(floor).with_meshes(floor).memory > 0
+    for wrong in (["tree.obj"], "tree.obj", 3, [[floor]]):
+        with pytest.raises(TypeError, match="^meshes: expected a Mesh or several, not .*; files are parts of the survey's scene$"):
+            pulsecast.Simulation(survey, meshes=wrong)
+    with pytest.raises(TypeError, match="^Mesh vertices: expected numbers, not "):
+        pulsecast.Mesh([[0, 0, 0], [1, 0]], [[0, 1, 2]])
+    with pytest.raises(TypeError, match="^Simulation seed: expected a whole number, not 'x'$"):
+        pulsecast.Simulation(survey, seed="x")
+
+
+def test_settings_are_told_by_what_they_are_not_by_default():
+    survey = flight(*LINE)
+    assert repr(pulsecast.SurveySettings()) == "SurveySettings()"
+    assert repr(pulsecast.LegPlatformSettings(speed=3.5)) == "LegPlatformSettings(speed=3.5)"
+    assert eval(repr(survey), vars(pulsecast)) == survey and "SurveySettings(name='line', scanner=ScannerSettings(id='line'" in repr(survey)
+    with pytest.raises(TypeError) as refused:
+        pulsecast.write_survey(pulsecast.SurveySettings(name="line"), "swapped.xml")
+    assert len(str(refused.value)) < 300
+
+
 def test_what_is_no_obj_file_is_told(tmp_path):
     (tmp_path / "a.gltf").write_text('{"asset": {"version": "2.0"}}')
     survey = flight(*LINE)
