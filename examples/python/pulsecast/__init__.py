@@ -14,11 +14,16 @@ Settings are dataclasses; numbers are in SI units and radians, and each angle is
 import dataclasses
 import difflib
 import re
+import sys
 from pathlib import Path
 
 try:
     import numpy as _
 except ImportError:
+    if sys.argv[:1] == ["-m"] and getattr(sys, "orig_argv", sys.argv)[-len(sys.argv)].removeprefix("-m") == "pulsecast":  # the program needs none
+        from .__main__ import main
+
+        main()
     raise ImportError("pulsecast needs NumPy: expected the Debian package python3-numpy, or `pip install numpy`") from None
 
 from ._core import *  # noqa: F403
@@ -31,11 +36,6 @@ __all__ = [name for name in vars(_core) if not name.startswith("_")] + ["__versi
 for _made in vars(_core).values():
     if dataclasses.is_dataclass(_made):
         add_degrees(_made)
-
-
-def asset_folders() -> list[Path]:
-    """Folder of this package with the catalogue of scanners and platforms and the spectra of materials; empty if not installed."""
-    here = Path(__file__).resolve()
         _made.__repr__ = lambda settings: _shortly(settings)
 
 
@@ -43,6 +43,11 @@ def _shortly(settings):
     """Settings as text that makes them again: the members that differ from their defaults."""
     pairs = [(member.name, repr(getattr(settings, member.name)), repr(member.default_factory())) for member in dataclasses.fields(settings)]
     return f"{type(settings).__name__}({', '.join(f'{name}={value}' for name, value, default in pairs if value != default)})"
+
+
+def asset_folders() -> list[Path]:
+    """Folder of this package with the catalogue of scanners and platforms and the spectra of materials; empty if not installed."""
+    here = Path(__file__).resolve()
     places = [here.parents[2] / "catalogue"] + [parent / "share" / "pulsecast" for parent in here.parents]
     return [place for place in places if (place / "data").is_dir()][:1]
 

@@ -4,8 +4,11 @@
 
 import copy
 import math
+import os
 import pickle
 import re
+import subprocess
+import sys
 import warnings
 from pathlib import Path
 
@@ -473,6 +476,16 @@ def test_what_is_no_obj_file_is_told(tmp_path):
     survey.scene.parts = [pulsecast.PartSettings(source=pulsecast.ObjSource(files=[str(tmp_path / "a.gltf")]))]
     with pytest.raises(pulsecast.FileError, match=r"a\.gltf: holds no vertex: expected an OBJ file"):
         pulsecast.Simulation(survey)
+
+
+@pytest.mark.parametrize("asked", ["--version", "doctor"])
+def test_the_program_starts_without_numpy(asked, tmp_path):
+    (tmp_path / "numpy.py").write_text("raise ImportError")
+    without = {**os.environ, "PYTHONPATH": f"{tmp_path}:{os.environ['PYTHONPATH']}"}
+    run = subprocess.run([sys.executable, "-m", "pulsecast", asked], env=without, capture_output=True, text=True)
+    assert run.returncode == 0 and pulsecast.__version__ in run.stdout and not run.stderr
+    run = subprocess.run([sys.executable, "-c", "import pulsecast"], env=without, capture_output=True, text=True)
+    assert run.returncode == 1 and "ImportError: pulsecast needs NumPy" in run.stderr
 
 
 # ----------------------------------------------------------------------------------------------------------------- page
