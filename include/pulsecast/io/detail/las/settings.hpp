@@ -143,7 +143,7 @@ struct LasSettings {
     for (auto extra = all.begin(); extra != all.end(); ++extra) {
       const std::string_view name = detail::las_cut(extra->name);
       const auto has_name = [&](auto& other) { return detail::las_cut(other.name) == name; };
-      if (name.empty()) throw SettingError("LasSettings: an extra value", " has no name");
+      if (name.empty()) throw SettingError("LasSettings: the extra value ''", " has no name");
       if (std::any_of(all.begin(), extra, has_name))
         throw SettingError(text::joined({"LasSettings: the extra value '", extra->name, "'"}),
                            " is there twice: expected names that differ in their first 31 bytes");
