@@ -89,7 +89,8 @@ void print_importer() {
   const std::vector<fs::path> programs = programs_named("pulsecast-import");
   if (programs.empty()) {
     std::cout << "; missing: glTF, GLB, STL, DAE, FBX and CityGML, which pulsecast-import reads; it is neither beside "
-                 "this program nor in the PATH (Debian package: pulsecast)\n";
+                 "this program nor in the PATH: convert to OBJ or PLY, or take that of a build or of pulsecast's own "
+                 ".deb (docs/packaging)\n";
     return;
   }
   const std::string version = version_of(programs.front());
@@ -99,7 +100,8 @@ void print_importer() {
             << programs.front().string();
   if (!same)
     std::cout << (version.empty() ? std::string("that does not start") : " of another version, " + version)
-              << ": expected pulsecast-import " PULSECAST_VERSION " and its libraries (Debian package: pulsecast)";
+              << ": expected pulsecast-import " PULSECAST_VERSION
+                 " and its libraries, of a build or of pulsecast's own .deb";
   std::cout << '\n';
 }
 
@@ -152,7 +154,7 @@ void print_catalogues(const Options& options) {
   }
   if (!any)
     line("catalogue") << "missing: documents name their own scanners and platforms, or --assets a folder of some "
-                         "(Debian package: pulsecast)\n";
+                         "(pulsecast's own .deb and wheel bring them)\n";
 }
 
 }  // namespace

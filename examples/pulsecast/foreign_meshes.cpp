@@ -47,7 +47,8 @@ RawScene imported(const fs::path& path, const io::MeshFileSettings& settings, bo
   if (programs.empty())
     throw FileError(path.string(), "",
                     "needs the program pulsecast-import, which is neither beside pulsecast nor in the PATH: expected "
-                    "that of the same version (CMake target: pulsecast_import_program; Debian package: pulsecast)");
+                    "OBJ or PLY, which need none, or that program of the same version, by a build (CMake target: "
+                    "pulsecast_import_program) or pulsecast's own .deb (docs/packaging)");
   const fs::path& program = programs.front();
   const ImportRequest request{.path = path.string(),
                               .city = city,

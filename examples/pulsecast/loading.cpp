@@ -3,6 +3,7 @@
 
 #include "loading.hpp"
 
+#include <algorithm>
 #include <filesystem>
 #include <functional>
 #include <iomanip>
@@ -11,6 +12,7 @@
 
 #include <pulsecast/helios/make_simulation.hpp>
 #include <pulsecast/helios/scene.hpp>
+#include <pulsecast/helios/survey.hpp>
 
 #include "foreign_meshes.hpp"
 #include "scene_store.hpp"
@@ -78,4 +80,21 @@ std::unique_ptr<Simulation> load(const SurveySettings& survey, const Loading& lo
 
 void for_each_raster(const SurveySettings& survey, const std::function<void(const Raster&, const Placement&)>& use) {
   for (const auto& [raster, placement] : helios::SceneBuilder(survey.scene, {}).rasters()) use(raster, placement);
+}
+
+std::string why_no_points(const Simulation& simulation, const RunSummary& run, PulseIndex first) {
+  if (!run.complete || run.echoes > 0 || run.pulses() == 0) return {};
+  const Simulation::Scene scene = simulation.scene();
+  const helios::CompiledSurvey& compiled = simulation.compiled();
+  const auto leg = std::ranges::find_if(compiled.legs, [&](const auto& l) { return l.end > l.first && l.end > first; });
+  if (scene.empty || leg == compiled.legs.end()) return "no points: the scene is empty, or no leg has pulses";
+  std::ostringstream text;
+  const auto put = [&](const char* words, const Vec3& v) {
+    text << words << '(' << v.x << ", " << v.y << ", " << v.z << ')';
+  };
+  text << std::fixed << std::setprecision(1) << "no points: leg " << leg->number;
+  put(" begins at ", compiled.source.legs()[leg->number].path().at({}).position);
+  put(" m, and the scene extends from ", scene.min);
+  put(" to ", scene.max);
+  return text.str() + " m";
 }

@@ -9,6 +9,7 @@
 
 #include <pulsecast/helios/settings.hpp>
 #include <pulsecast/helios/simulation.hpp>
+#include <pulsecast/run.hpp>
 #include <pulsecast/scene/part.hpp>
 #include <pulsecast/shape/raster.hpp>
 
@@ -38,3 +39,8 @@ std::unique_ptr<pulsecast::helios::Simulation> load(const pulsecast::helios::Sur
 /// Calls `use` with each raster of heights in a scene, and its placement.
 void for_each_raster(const pulsecast::helios::SurveySettings& survey,
                      const std::function<void(const pulsecast::Raster&, const pulsecast::Placement&)>& use);
+
+/// Explains a complete run without points, of pulse slots from `first` on: mostly, scene and legs have coordinates of
+/// different origin. Empty for any other.
+std::string why_no_points(const pulsecast::helios::Simulation& simulation, const pulsecast::RunSummary& run,
+                          pulsecast::PulseIndex first);

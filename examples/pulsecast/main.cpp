@@ -137,9 +137,9 @@ class Session {
     if (!pages_.address().empty()) std::cout << "watch this run at " << pages_.address() << std::endl;
     const RunSummary all = play_all(simulation, *inputs, parent, again);
     pages_.finish(all.complete);
-    if (all.complete && all.echoes == 0 && all.pulses() > 0) explain_no_points(*simulation);
     if (!all.complete)
       notes_.note("stopped: files are complete up to there; the same command with --resume continues the run");
+    if (const std::string why = why_no_points(*simulation, all, 0); !why.empty()) notes_.warn(why);
     notes_.note(left_out_.notes(options_.las_1_0));
     if (all.complete && all.echoes > 0 && !empty_legs_.empty())
       notes_.warn("no points from leg " + empty_legs_ +
@@ -265,25 +265,6 @@ class Session {
     notes_.warn(simulation.warnings());
     notes_.note(scene_notes_);
     notes_.require_none();
-  }
-
-  /// Explains a cloud without points: mostly, scene and legs have coordinates of different origin.
-  void explain_no_points(const Simulation& simulation) {
-    const Simulation::Scene scene = simulation.scene();
-    const CompiledSurvey& compiled = simulation.compiled();
-    const auto leg = std::find_if(compiled.legs.begin(), compiled.legs.end(),
-                                  [](const CompiledSurvey::Leg& l) { return l.end > l.first; });
-    if (scene.empty || leg == compiled.legs.end())
-      return notes_.warn("no points: the scene is empty, or no leg has pulses");
-    std::ostringstream text;
-    const auto put = [&](const char* words, const Vec3& v) {
-      text << words << '(' << v.x << ", " << v.y << ", " << v.z << ')';
-    };
-    text << std::fixed << std::setprecision(1) << "no points: leg " << leg->number;
-    put(" begins at ", compiled.source.legs()[leg->number].path().at({}).position);
-    put(" m, and the scene extends from ", scene.min);
-    put(" to ", scene.max);
-    notes_.warn(text.str() + " m");
   }
 
   /// Line with all inputs of the results except seed and time.

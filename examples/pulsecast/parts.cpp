@@ -17,7 +17,7 @@ const void* loaded_part(const char* name) {
   const void* const found = table == nullptr ? nullptr : table(PULSECAST_VERSION);
   if (found == nullptr)
     throw std::runtime_error(std::string("a part of this program cannot be loaded, ") + name +
-                             ": expected that of the same build (Debian package: pulsecast)" +
+                             ": expected that of the same build" +
                              (object == nullptr ? std::string("; ") + dlerror() : ""));
   return found;
 }

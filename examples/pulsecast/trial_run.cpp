@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdlib>
 #include <ctime>
 #include <exception>
 #include <filesystem>
@@ -18,6 +19,8 @@
 #include <memory>
 #include <random>
 #include <stop_token>
+#include <string>
+#include <system_error>
 #include <utility>
 
 #include <pulsecast/base/parallel.hpp>
@@ -37,9 +40,18 @@ constexpr double start_time = 302'400;  // half a GPS week, whose seconds have a
 
 /// Temporary folder; the destructor removes it.
 struct TemporaryFolder {
-  fs::path path = fs::temp_directory_path() /
-                  ("pulsecast_forecast_" + std::to_string(getpid()) + '_' + std::to_string(std::random_device{}()));
+  fs::path path =
+      parent() / ("pulsecast_forecast_" + std::to_string(getpid()) + '_' + std::to_string(std::random_device{}()));
   TemporaryFolder() { fs::create_directories(path); }
+  /// Folder of TMPDIR. Throws a `FileError` with its path if it is none.
+  static fs::path parent() {
+    std::error_code problem;
+    fs::path folder = fs::temp_directory_path(problem);
+    const char* const given = std::getenv("TMPDIR");
+    if (problem)
+      throw FileError(given ? given : "/tmp", "", "is no folder: expected one for temporary files, by TMPDIR");
+    return folder;
+  }
   ~TemporaryFolder() {
     std::error_code ignored;
     fs::remove_all(path, ignored);

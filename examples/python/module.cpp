@@ -62,7 +62,7 @@ Paths with_catalogue(Paths folders) {
   return folders;
 }
 
-std::unique_ptr<Simulation> simulation_of(py::handle survey, Paths assets, std::vector<Simulation::Mesh> meshes,
+std::unique_ptr<Simulation> simulation_of(py::handle survey, Paths assets, const py::object& meshes,
                                           const std::map<std::string, py::object>& trajectories,
                                           std::optional<Whole<"Simulation seed">> seed, bool echo_width, bool waveforms,
                                           bool waveform_noise, bool fixed_incidence, bool library_physics,
@@ -72,6 +72,7 @@ std::unique_ptr<Simulation> simulation_of(py::handle survey, Paths assets, std::
   const helios::SurveySettings settings = survey_of(survey);
   require_within("Simulation repetition", run, 0, std::numeric_limits<int>::max(), "");
   assets = with_catalogue(std::move(assets));
+  std::vector<Simulation::Mesh> more = meshes_of(meshes);
   std::map<std::string, std::vector<TimedPose>> paths;
   for (const auto& [name, poses] : trajectories) paths[name] = trajectory_poses(poses, "trajectories['" + name + "']");
   std::unique_ptr<Simulation> simulation;
@@ -89,7 +90,7 @@ std::unique_ptr<Simulation> simulation_of(py::handle survey, Paths assets, std::
                                  .platform_noise = platform_noise,
                                  .leg_noise = leg_noise,
                                  .assets = std::move(assets),
-                                 .meshes = std::move(meshes),
+                                 .meshes = std::move(more),
                                  .trajectories = std::move(paths),
                                  .threads = threads});
     if (run > 0) simulation = simulation->repetition(run);
@@ -234,13 +235,14 @@ void bind_simulation(py::module_& m) {
   py::class_<Simulation> simulation(m, "Simulation",
                                     "A survey with its scene loaded and its legs planned, ready to run.");
   simulation
-      .def(py::init(&simulation_of), "survey"_a, py::kw_only(), "assets"_a = Paths{},
-           "meshes"_a = std::vector<Simulation::Mesh>{}, "trajectories"_a = std::map<std::string, py::object>{},
-           "seed"_a = py::none(), "echo_width"_a = false, "waveforms"_a = false, "waveform_noise"_a = false,
-           "fixed_incidence"_a = false, "library_physics"_a = false, "light_paths"_a = false, "uncertainty"_a = false,
-           "platform_noise"_a = true, "leg_noise"_a = true, "threads"_a = 0, "repetition"_a = 0,
-           "survey: SurveySettings. assets: search folders before the catalogue. meshes: triangles in addition to the "
-           "survey's parts. "
+      .def(py::init(&simulation_of), "survey"_a, py::kw_only(), "assets"_a = Paths{}, "meshes"_a = py::none(),
+           "trajectories"_a = std::map<std::string, py::object>{}, "seed"_a = py::none(), "echo_width"_a = false,
+           "waveforms"_a = false, "waveform_noise"_a = false, "fixed_incidence"_a = false, "library_physics"_a = false,
+           "light_paths"_a = false, "uncertainty"_a = false, "platform_noise"_a = true, "leg_noise"_a = true,
+           "threads"_a = 0, "repetition"_a = 0,
+           "survey: SurveySettings. assets: search folders before the catalogue. meshes: a Mesh, or several, in "
+           "addition "
+           "to the survey's parts. "
            "trajectories: arrays by the names that legs have as `trajectory.file`, one pose a row: time [s], x, y, z "
            "[m, world], and roll, pitch, yaw [rad; yaw clockwise from north] or a quaternion x, y, z, w from the "
            "axes right, forward, up to the world; without either, the platform heads along its path. Also what "

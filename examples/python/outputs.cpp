@@ -29,6 +29,7 @@
 #include <pulsecast/python/bind.hpp>
 
 #include "../pulsecast/clock.hpp"
+#include "../pulsecast/loading.hpp"
 #include "../pulsecast/notes.hpp"
 #include "../pulsecast/outputs.hpp"
 #include "../pulsecast/pages.hpp"
@@ -40,6 +41,8 @@ namespace py = pybind11;
 using namespace pulsecast;
 using namespace py::literals;
 using helios::Simulation;
+using python::RunRequest;
+using CompiledLeg = helios::CompiledSurvey::Leg;
 
 namespace {
 
@@ -108,6 +111,8 @@ FileRequest request_of(const py::object& output, const std::vector<std::string>&
     request.paths.push_back(path_of(output));
   for (const auto& [name, value] : options) {
     const auto keyword = name.cast<std::string>();
+    if (const std::string right = keyword_of(keyword); right != keyword)
+      throw py::value_error(keyword + " is no option of files; did you mean '" + right + "'?");
     if (keyword == "format" && !value.is_none())
       request.format = text::lower(std::string(py::str(value)));
     else
@@ -373,8 +378,7 @@ void write_batch(const python::Batch& batch, const py::object& output, const std
 /// Run of a simulation, to files too if there are any.
 class FileRun {
  public:
-  FileRun(const Simulation& simulation, const python::RunRequest& request, const py::object& output,
-          const py::kwargs& options)
+  FileRun(const Simulation& simulation, const RunRequest& request, const py::object& output, const py::kwargs& options)
       : simulation_(simulation), to_sink_(output.is_none() || !request.callback.is_none()) {
     if (output.is_none()) {
       if (options.size() > 0)
@@ -402,9 +406,15 @@ class FileRun {
   void close() const {
     if (files_) files_->close();
   }
-  /// Warns of what was noted. Requires the GIL.
-  void warn() const {
+
+  /// Warns of what files noted, and of a run of all slots, or of those of whole legs, without points.
+  void after(const RunRequest& request, const RunSummary& summary) const {
     if (files_) files_->warn_of_notes();
+    const auto& legs = simulation_.compiled().legs;
+    const bool begins = request.first == 0 || std::ranges::count(legs, request.first, &CompiledLeg::first) > 0;
+    const bool ends = !request.end || std::ranges::count(legs, *request.end, &CompiledLeg::end) > 0;
+    if (summary.echoes > 0 || request.stride > 1 || !begins || !ends) return;
+    if (const std::string why = why_no_points(simulation_, summary, request.first); !why.empty()) warn({why});
   }
 
  private:
@@ -445,7 +455,7 @@ void warn(const std::vector<std::string>& texts) {
 }
 
 void bind_run_to_files(py::class_<Simulation>& simulation) {
-  const auto runner = [](const Simulation& s, const python::RunRequest& request, const py::object& output,
+  const auto runner = [](const Simulation& s, const RunRequest& request, const py::object& output,
                          const py::kwargs& options) { return FileRun(s, request, output, options); };
   python::bind_run<py::object, py::kwargs>(
       simulation, runner, [](const Simulation& s) { return s.points(); },

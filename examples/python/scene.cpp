@@ -12,6 +12,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <string>
 #include <utility>
 
 #include <pybind11/stl.h>
@@ -23,6 +24,7 @@
 #include <pulsecast/python/ray_queries.hpp>
 #include <pulsecast/scene/scene.hpp>
 
+#include "outputs.hpp"
 #include "settings.hpp"
 
 namespace py = pybind11;
@@ -65,12 +67,27 @@ NumberArray pose_columns(const py::object& given, const std::string& name) {
   return numbers_of(py::module_::import("numpy").attr("column_stack")(columns), name);
 }
 
+/// Warns of roll, pitch and yaw in degrees: from 0, or from one pose to the next, they turn by more than a turn; those
+/// of a platform tilt beyond the vertical.
+void ask_for_degrees(const NumberArray& rows, bool platform, const std::string& name) {
+  for (py::ssize_t i = 0; i < rows.shape(0); ++i)
+    for (py::ssize_t k = 4; k < 7; ++k) {
+      const double angle = rows.at(i, k), before = i > 0 ? rows.at(i - 1, k) : 0;
+      const bool tilts = platform && ((k == 4 && std::fabs(angle) > max_angle) ||
+                                      (k == 5 && std::fabs(std::remainder(angle, 2 * pi)) > pi / 2 + 1e-6));
+      if (!tilts && !(std::fabs(angle - before) > max_angle)) continue;
+      return warn({name + ": " + std::array{"roll", "pitch", "yaw"}[static_cast<std::size_t>(k - 4)] + " of row " +
+                   std::to_string(i) + " is " + text::to_text(angle) + " rad: given in degrees, not radians?"});
+    }
+}
+
 /// Poses of rows of 4, 7 or 8 numbers, as `trajectory_poses`; those of 4 are not turned.
-std::vector<TimedPose> timed_poses_of(const NumberArray& rows, const std::string& name) {
+std::vector<TimedPose> timed_poses_of(const NumberArray& rows, const std::string& name, bool platform) {
   const py::ssize_t columns = rows.ndim() == 2 ? rows.shape(1) : 0;
   if (columns != 4 && columns != 7 && columns != 8)
     throw SettingError(name + " (columns)", static_cast<double>(columns), "",
                        "4, 7 or 8: time, x, y, z, and roll, pitch, yaw or a quaternion x, y, z, w");
+  if (columns == 7) ask_for_degrees(rows, platform, name);
   std::vector<TimedPose> poses;
   for (py::ssize_t i = 0; i < rows.shape(0); ++i) {
     const double* const row = rows.data(i);
@@ -213,14 +230,15 @@ void set_objects(const py::object& given, Simulation::Mesh& mesh) {
   if (objects.ndim() == 0) mesh.object = std::exchange(mesh.objects, {}).front();
 }
 
-Simulation::Mesh mesh_of(const NumberArray& vertices, const py::object& triangles, const py::object& object,
+Simulation::Mesh mesh_of(const py::object& vertices, const py::object& triangles, const py::object& object,
                          const py::object& reflectance, const py::object& classification, bool ground,
                          const std::optional<NumberArray>& texture, const std::optional<SmoothInterface>& smooth,
                          const std::optional<std::array<double, 3>>& colour, const std::optional<Picture>& picture,
                          const std::optional<std::map<std::string, double>>& attributes_given, const py::object& law,
                          std::optional<double> cutoff, const std::optional<NumberArray>& placements,
                          const py::object& motion) {
-  Simulation::Mesh mesh{.data = mesh_data_of(vertices, triangles), .material = {.ground = ground}};
+  Simulation::Mesh mesh{.data = mesh_data_of(numbers_of(vertices, "Mesh vertices"), triangles),
+                        .material = {.ground = ground}};
   if (texture) set_texture(*texture, mesh.data);
   if (smooth) mesh.material.smooth = *smooth;
   if (!law.is_none()) mesh.material.law = law_of(law);
@@ -236,7 +254,7 @@ Simulation::Mesh mesh_of(const NumberArray& vertices, const py::object& triangle
   if (!all.empty()) mesh.attributes = attributes(std::move(all));
   if (!motion.is_none())
     mesh.motion =
-        std::make_shared<const PartMotion>(timed_poses_of(pose_columns(motion, "Mesh::motion"), "Mesh::motion"));
+        std::make_shared<const PartMotion>(timed_poses_of(pose_columns(motion, "Mesh::motion"), "Mesh::motion", false));
   mesh.data.validate();
   return mesh;
 }
@@ -253,14 +271,16 @@ std::vector<RaycastingScene::Part> parts_of(const std::vector<Simulation::Mesh>&
   return all;
 }
 
-std::unique_ptr<RaycastingScene> raycasting_scene_of(const std::vector<Simulation::Mesh>& meshes,
+std::unique_ptr<RaycastingScene> raycasting_scene_of(const py::object& given,
                                                      python::Whole<"RaycastingScene threads", unsigned> threads) {
+  const std::vector<Simulation::Mesh> meshes = meshes_of(given);
   const py::gil_scoped_release free;
   return std::make_unique<RaycastingScene>(parts_of(meshes, threads));
 }
 
-std::unique_ptr<RaycastingScene> with_meshes(const RaycastingScene& scene, const std::vector<Simulation::Mesh>& meshes,
+std::unique_ptr<RaycastingScene> with_meshes(const RaycastingScene& scene, const py::object& given,
                                              python::Whole<"with_meshes threads", unsigned> threads) {
+  const std::vector<Simulation::Mesh> meshes = meshes_of(given);
   const py::gil_scoped_release free;
   return std::make_unique<RaycastingScene>(scene.with_parts(parts_of(meshes, threads), threads.value));
 }
@@ -341,7 +361,7 @@ void bind_raycasting_scene(py::module_& m) {
       "Meshes to be asked by rays, without a survey. Part i is mesh i, if each has one placement.");
   scene
       .def(py::init(&raycasting_scene_of), "meshes"_a, py::kw_only(), "threads"_a = 0,
-           "meshes: list of Mesh. threads: for building the index; 0: all. Raises SettingError.")
+           "meshes: a Mesh, or several. threads: for building the index; 0: all. Raises SettingError.")
       .def("with_meshes", &with_meshes, "meshes"_a, py::kw_only(), "threads"_a = 0,
            "RaycastingScene with more meshes after those of this one, whose memory it shares.")
       .def_property_readonly(
@@ -354,9 +374,25 @@ void bind_raycasting_scene(py::module_& m) {
 
 }  // namespace
 
+std::vector<Simulation::Mesh> meshes_of(const py::object& given) {
+  std::vector<Simulation::Mesh> meshes;
+  const auto add = [&](py::handle one) {
+    if (!py::isinstance<Simulation::Mesh>(one))
+      throw py::type_error("meshes: expected a Mesh or several, not " + std::string(py::repr(one)) +
+                           "; files are parts of the survey's scene");
+    meshes.push_back(one.cast<const Simulation::Mesh&>());
+  };
+  if (given.is_none()) return meshes;
+  if (py::isinstance<py::iterable>(given) && !py::isinstance<py::str>(given))
+    for (const py::handle one : py::iter(given)) add(one);
+  else
+    add(given);
+  return meshes;
+}
+
 std::vector<TimedPose> trajectory_poses(const py::object& array, const std::string& name) {
   const NumberArray rows = pose_columns(array, name);
-  std::vector<TimedPose> poses = timed_poses_of(rows, name);
+  std::vector<TimedPose> poses = timed_poses_of(rows, name, true);
   return rows.shape(1) == 4 ? with_headings(std::move(poses)) : poses;
 }
 

@@ -640,7 +640,7 @@ TEST_CASE(
   CHECK(notes ==
         std::vector<std::string>{
             "binSize_ns is 9 ns, and pulses are 4 ns long: it is limited to 4 ns; expected bins from 0.0004 ns to 4 ns",
-            "leg 0: headRotateStop_deg is 20626.480625, 57.29578 turns of the head: given in degrees, not radians?",
+            "leg 0: headRotateStop_deg is 20626.480625, 57.29578 turns: given in degrees, not radians?",
             "leg 0: headRotatePerSec_deg exceeds the scanner's maximum: it is limited to 360",
             "leg 0: pulseFreq_hz of 123 Hz is not one of the scanner's pulse rates",
             "leg 0: scanAngle_deg exceeds the scanner's maximum: it is limited to 60"});

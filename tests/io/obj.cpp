@@ -311,6 +311,12 @@ TEST_CASE("a file without a face that has an area is read, with a warning") {
   }
 }
 
+TEST_CASE("a file without a vertex is no OBJ file") {
+  for (const char* text : {"# nothing\n", "{\n \"asset\": {\"version\": \"2.0\"}\n}\n"})
+    CHECK_THROWS_WITH_AS((void)Folder().obj(text), doctest::Contains("a.obj: holds no vertex: expected an OBJ file"),
+                         FileError);
+}
+
 TEST_CASE("a material or library without a name is told, and the faces are there") {
   const ObjModel model = Folder().obj("mtllib\n" + corners + "usemtl\nf 1 2 3\n");
   CHECK(model.mesh.triangles.size() == 1);

@@ -13,11 +13,17 @@ Settings are dataclasses; numbers are in SI units and radians, and each angle is
 
 import dataclasses
 import difflib
+import re
+import sys
 from pathlib import Path
 
 try:
     import numpy as _
 except ImportError:
+    if sys.argv[:1] == ["-m"] and getattr(sys, "orig_argv", sys.argv)[-len(sys.argv)].removeprefix("-m") == "pulsecast":  # the program needs none
+        from .__main__ import main
+
+        main()
     raise ImportError("pulsecast needs NumPy: expected the Debian package python3-numpy, or `pip install numpy`") from None
 
 from ._core import *  # noqa: F403
@@ -30,6 +36,13 @@ __all__ = [name for name in vars(_core) if not name.startswith("_")] + ["__versi
 for _made in vars(_core).values():
     if dataclasses.is_dataclass(_made):
         add_degrees(_made)
+        _made.__repr__ = lambda settings: _shortly(settings)
+
+
+def _shortly(settings):
+    """Settings as text that makes them again: the members that differ from their defaults."""
+    pairs = [(member.name, repr(getattr(settings, member.name)), repr(member.default_factory())) for member in dataclasses.fields(settings)]
+    return f"{type(settings).__name__}({', '.join(f'{name}={value}' for name, value, default in pairs if value != default)})"
 
 
 def asset_folders() -> list[Path]:
@@ -52,22 +65,34 @@ def catalogue(assets=()):
 
 
 def scanner(name, assets=()):
-    """ScannerSettings of the `catalogue` by id, also without that of the maker: 'riegl_vz400' or 'vz400'. Raises ValueError with the
-    nearest name."""
+    """ScannerSettings of the `catalogue` by id, with or without that of the maker, or name: 'riegl_vz400', 'vz400', 'RIEGL VZ-400'. Case,
+    blanks, hyphens and underscores do not count. Raises ValueError with the nearest id."""
     return _named(catalogue(assets)["scanners"], name, "scanner")
 
 
 def platform(name, assets=()):
-    """PlatformSettings of the `catalogue` by id, such as 'tripod' or 'sr22'. Raises ValueError with the nearest name."""
+    """PlatformSettings of the `catalogue`, such as 'tripod' or 'sr22', found and refused as by `scanner`."""
     return _named(catalogue(assets)["platforms"], name, "platform")
 
 
 def _named(known, name, kind):
-    """The first of an id; else the only one whose id is that after a maker's."""
+    """The first of an id; else the only one whose id, with or without its maker, or name is that in `_plain` letters."""
     by_id = {one.id: one for one in reversed(known)}
-    short = [one for one in by_id if one.partition("_")[2] == name]
-    if name in by_id or len(short) == 1:
-        return by_id[name if name in by_id else short[0]]
-    near = difflib.get_close_matches(str(name), by_id, n=1)
-    said = f"did you mean {near[0]!r}?" if near else "known names: " + ", ".join(sorted(by_id))
+    if name in by_id:
+        return by_id[name]
+    spellings = {}  # plain ones, with the ids that they may mean
+    for one in by_id.values():
+        for spelling in {_plain(text) for text in (one.id, one.id.partition("_")[2], one.name)} - {""}:
+            spellings.setdefault(spelling, []).append(one.id)
+    found = spellings.get(_plain(name), [])
+    if len(found) == 1:
+        return by_id[found[0]]
+    alike = [spelling for spelling in spellings if spelling.startswith(_plain(name))] or difflib.get_close_matches(_plain(name), spellings, n=1)
+    near = found or sorted({one for spelling in alike for one in spellings[spelling]})[:6]
+    said = "did you mean " + " or ".join(map(repr, near)) + "?" if near else "catalogue() has all"
     raise ValueError(f"the catalogue has no {kind} {name!r}; {said}")
+
+
+def _plain(text):
+    """A name without case, blanks, hyphens and underscores."""
+    return re.sub(r"[\s_-]", "", str(text)).casefold()

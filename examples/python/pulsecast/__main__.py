@@ -16,7 +16,7 @@ def program() -> str:
     for place in places:
         if place.is_file():
             return str(place)
-    sys.exit("error: the survey program is not installed with this module (Debian package: pulsecast)")
+    sys.exit("error: the survey program is not installed with this module: expected it of the same build, wheel or .deb (docs/packaging)")
 
 
 def environment() -> dict[str, str]:

@@ -242,9 +242,9 @@ struct MountErrorSettings {
   void fields(FieldIo& io) {
     if (io.reads()) *this = {};
     io.components(position);
-    io.number("roll_deg", roll, units::degree, -180, 180);
-    io.number("pitch_deg", pitch, units::degree, -180, 180);
-    io.number("heading_deg", heading, units::degree, -180, 180);
+    io.number("roll_deg", roll, units::small_degree, -180, 180);
+    io.number("pitch_deg", pitch, units::small_degree, -180, 180);
+    io.number("heading_deg", heading, units::small_degree, -180, 180);
   }
   bool operator==(const MountErrorSettings&) const = default;
 };
@@ -266,11 +266,11 @@ struct PoseErrorSettings {
       for (int k = 0; k < 3; ++k) io.number(names[static_cast<std::size_t>(k)], v[k], unit, 0, most);
     };
     axes({"positionDriftX_m", "positionDriftY_m", "positionDriftZ_m"}, position_drift, units::metre, 1e6);
-    axes({"attitudeDriftX_deg", "attitudeDriftY_deg", "attitudeDriftZ_deg"}, attitude_drift, units::degree, 180);
+    axes({"attitudeDriftX_deg", "attitudeDriftY_deg", "attitudeDriftZ_deg"}, attitude_drift, units::small_degree, 180);
     io.number("driftTime_s", drift_time, units::second, 1e-3, 1e9);
-    io.number("angularJitter_deg", angular_jitter, units::degree, 0, 180);
+    io.number("angularJitter_deg", angular_jitter, units::small_degree, 0, 180);
     axes({"leverArmX_m", "leverArmY_m", "leverArmZ_m"}, lever_arm_deviation, units::metre, 1e6);
-    axes({"boresightX_deg", "boresightY_deg", "boresightZ_deg"}, boresight_deviation, units::degree, 180);
+    axes({"boresightX_deg", "boresightY_deg", "boresightZ_deg"}, boresight_deviation, units::small_degree, 180);
     io.number("latency_s", latency_deviation, units::second, 0, 1e3);
   }
   bool operator==(const PoseErrorSettings&) const = default;

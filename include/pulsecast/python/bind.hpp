@@ -149,11 +149,19 @@ namespace detail {
   return kept;
 }
 
+/// Run with an end of its own, unless a callback fails: after the last batch `close()`, without the GIL, then `after`,
+/// with it.
+template <class Run>
+concept HasEnd = requires(const Run& run, const RunRequest& request, const RunSummary& summary) {
+  { run.close() } -> std::same_as<void>;
+  { run.after(request, summary) } -> std::same_as<void>;
+};
+
 }  // namespace detail
 
 /// Calls `run(options, sink)` without the GIL until done or interrupted, and keeps its points.
 /// Rethrows Python exceptions of callbacks and signal handlers; that of Ctrl-C as `Interrupted`,
-/// with the result. Throws a `TypeError` for a callback that is not callable, and as `kept_by`.
+/// with the result. Throws a `TypeError` for a callback that is not callable, and as `kept_by`. See `HasEnd`.
 template <class Run>
 [[nodiscard]] Batch run(const RunRequest& request, io::PointSettings points, const Run& run) {
   request.validate();
@@ -196,10 +204,10 @@ template <class Run>
   watch.during([&] {
     summary = run(options, sink);
     if (has_callback && rows.pulses() > 0) deliver();
-    if constexpr (requires { run.close(); }) run.close();
+    if constexpr (detail::HasEnd<Run>) run.close();
   });
   const bool interrupted = watch.interrupted();
-  if constexpr (requires { run.warn(); }) run.warn();
+  if constexpr (detail::HasEnd<Run>) run.after(request, summary);
   Batch result = taken();
   result.summary = summary;
   if (!interrupted) return result;

@@ -4,8 +4,12 @@
 
 import copy
 import math
+import os
 import pickle
 import re
+import subprocess
+import sys
+import warnings
 from pathlib import Path
 
 import numpy as np
@@ -150,9 +154,15 @@ def test_instruments_of_the_catalogue_have_names():
     assert pulsecast.platform("tripod").kind == "stationary"
     known = pulsecast.catalogue()
     assert {one.id for one in known["scanners"]} > {"riegl_vz400", "vlp16", "gedi"} and len(known["platforms"]) > 10
-    with pytest.raises(ValueError, match="^the catalogue has no scanner 'riegl_vz40'; did you mean 'riegl_vz400'\\?$"):
+    for name in ("VZ-400", "VZ400", "vz_400", "RIEGL VZ-400", "Riegl_VZ400"):
+        assert pulsecast.scanner(name).id == "riegl_vz400", name
+    assert pulsecast.scanner("VUX-1UAV") == pulsecast.scanner("vux-1uav") and pulsecast.platform("Tripod").id == "tripod"
+    for name, near in (("vz40O", "riegl_vz400"), ("vux-1", "vux-1uav")):
+        with pytest.raises(ValueError, match=f"^the catalogue has no scanner '{name}'; did you mean .*{near}'.*\\?$"):
+            pulsecast.scanner(name)
+    with pytest.raises(ValueError, match="^the catalogue has no scanner 'riegl_vz40'; did you mean 'riegl_vz400' or 'riegl_vz400i'\\?$"):
         pulsecast.scanner("riegl_vz40")
-    with pytest.raises(ValueError, match="no platform 'xyz'; known names: .*, tripod, "):
+    with pytest.raises(ValueError, match=r"no platform 'xyz'; catalogue\(\) has all$"):
         pulsecast.platform("xyz")
 
 
@@ -163,8 +173,8 @@ def test_documents_of_one_s_own_come_before_the_catalogue(tmp_path):
         (tmp_path / "data" / f"scanners_{name}.xml").write_text(text)
     assert pulsecast.scanner("vz400", assets=[tmp_path]).pulse_rates == [7] and pulsecast.scanner("vz400").pulse_rates != [7]
     assert pulsecast.scanner("own_one", assets=[str(tmp_path)]).pulse_rates == [9]
-    with pytest.raises(ValueError, match="no scanner 'one'"):  # of two makers
-        pulsecast.scanner("one", assets=[tmp_path])
+    with pytest.raises(ValueError, match=r"no scanner 'ONE'; did you mean '(own|other)_one' or '(own|other)_one'\?"):  # of two makers
+        pulsecast.scanner("ONE", assets=[tmp_path])
 
 
 def test_angles_are_also_in_degrees():
@@ -243,6 +253,25 @@ def test_a_block_flight_covers_its_area_with_its_overlap():
         pulsecast.plan_block_flight(3)
 
 
+def test_a_run_without_points_says_why_at_the_line_of_its_caller(tmp_path):
+    below = flight((0, 0, -80), (0, 50, -80), (0, 100, -80))
+    run = pulsecast.Simulation(below, meshes=[pulsecast.Mesh(*SQUARE)])
+    middle = int(run.legs[1]["first"])
+    why = r"no points: leg {} begins at \(0.0, {}.0, -80.0\) m, and the scene extends from \(-200.0, -200.0, 0.0\) to \(200.0, 200.0, 0.0\) m"
+    for number, asked in ((0, {}), (0, {"callback": print}), (0, {"output": tmp_path / "no.xyz"}), (0, {"end": middle}), (1, {"first": middle})):
+        with pytest.warns(UserWarning, match=why.format(number, 50 * number)) as told:
+            run.run(**asked)
+        assert len(told) == 1 and told[0].filename == __file__
+    with pytest.warns(UserWarning, match="no points: the scene is empty"):
+        pulsecast.Simulation(below).run()
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        for asked in ({"first": 1}, {"end": middle - 1}, {"stride": 2}):  # of a part, which may be empty on purpose
+            run.run(**asked)
+        with pytest.raises(UserWarning, match="no points"):
+            run.run()
+
+
 # --------------------------------------------------------------------------------------------------------- trajectories
 
 def driven(poses, *windows, **trajectory):
@@ -272,14 +301,61 @@ def test_legs_follow_their_parts_of_a_trajectory():
     assert list(path["leg"]) == [0, 0, 0, 1, 1, 1, 1, 1]
     assert np.abs(path["x"] - [5, 10, 15, 20, 25, 30, 35, 40]).max() < 1e-9
     assert np.abs(path["yaw"] - np.pi / 2).max() < 1e-9  # heads east, along its path
-    with pytest.raises(pulsecast.SettingError, match="leg 0: tStart to tEnd.*within the poses, from 0 s to 4 s"):
+    with pytest.raises(pulsecast.SettingError, match="^leg 0: tStart to tEnd is from 5 s to 6 s, but must be within the poses, from 0 s to 4 s$"):
         driven(poses, (5, 6))
+    with pytest.warns(UserWarning, match="^drive: the window ends after the last pose, at 4 s$"):
+        driven(poses, (1, 40))
+    with pytest.warns(UserWarning, match="^drive: the window begins before the first pose, at 0 s$"):
+        driven(poses, (-1, 2))
 
 
 def test_attitudes_may_be_quaternions():
     half = 0.35
     east = driven([[0, 0, 0, 60, 0, 0, -math.sin(half), math.cos(half)], [1, 0, 9, 60, 0, 0, -math.sin(half), math.cos(half)]])
     assert np.abs(east.trajectory(0.5)["yaw"] - 2 * half).max() < 1e-9
+
+
+def test_angles_in_degrees_are_asked_about():
+    level = np.column_stack([np.arange(5.0), np.zeros(5), 10 * np.arange(5.0), np.full(5, 60.0), np.zeros((5, 3))])
+    for column, angles, says in ((6, 90.0, "yaw of row 0 is 90 rad"), (6, [-3, 3, -3, 3, 183], "yaw of row 4 is 183 rad"),
+                                 (5, 3.0, "pitch of row 0 is 3 rad"), (4, [0, 1, 2, 3, 8.5], "roll of row 4 is 8.5 rad")):
+        poses = level.copy()
+        poses[:, column] = angles
+        with pytest.warns(UserWarning, match=re.escape(f"trajectories['drive']: {says}: given in degrees, not radians?")):
+            driven(poses)
+        if column != 5:
+            continue
+        pulsecast.Mesh(*SQUARE, motion=poses)  # may turn over
+    with pytest.warns(UserWarning, match="Mesh::motion: yaw of row 1 is 90 rad: given in degrees"):
+        pulsecast.Mesh(*SQUARE, motion=[[0] * 7, [1, 0, 0, 0, 0, 0, 90]])
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        for column, angles in ((6, np.linspace(0, 20, 5)), (6, [3, -3, 3, 6.2, 0]), (5, [6.28, 0, -1.5, 0, 1.5]), (4, [3, -3, 3, 3.3, 6.28])):
+            poses = level.copy()
+            poses[:, column] = angles
+            driven(poses)  # turns on and on; within a turn either way
+
+
+def test_angles_of_settings_in_degrees_are_asked_about():
+    def told(**platform):
+        survey = flight(*LINE, **platform)
+        with warnings.catch_warnings(record=True) as notes:
+            warnings.simplefilter("always")
+            pulsecast.Simulation(survey, meshes=[pulsecast.Mesh(*SQUARE)])
+        return [str(note.message) for note in notes]
+
+    down = pulsecast.platform("satellite").mount
+    turned = copy.deepcopy(down)
+    turned.rotation.turns.append(pulsecast.AxisTurn(axis="x", angle=90))
+    assert told(mount=turned) == ["rot 2: angle_deg is 5156.620156, 14.323945 turns: given in degrees, not radians?"]
+    assert told(mount_error=pulsecast.MountErrorSettings(pitch=2)) == ["pitch_deg is 114.591559, 0.31831 turns: given in degrees, not radians?"]
+    assert len(told(pose_errors=pulsecast.PoseErrorSettings(angular_jitter=1, attitude_drift=(1, 0, 2), boresight_deviation=(0, 3, 0)))) == 4
+    for noise in (pulsecast.NoiseSettings(deviation=2), pulsecast.NoiseSettings(distribution="uniform", low=-2, high=0)):
+        [note] = told(attitude_noise=[None, noise, None])
+        assert note.startswith("attitudeYNoise is 114.59"), note
+    turned.rotation.turns[-1].angle_deg = 36000
+    assert told(mount=turned, mount_error=pulsecast.MountErrorSettings(pitch=0.4), attitude_noise=[None, pulsecast.NoiseSettings(deviation=0.1), None],
+                position_noise=[None, pulsecast.NoiseSettings(deviation=2), None]) == []
 
 
 @pytest.mark.parametrize(("poses", "says"), [
@@ -369,6 +445,49 @@ def test_what_is_of_another_type_is_refused(asked, says):
         pulsecast.Mesh(*SQUARE, **asked)
 
 
+def test_meshes_are_one_or_several():
+    floor, survey = pulsecast.Mesh(*SQUARE), flight(*LINE)
+    for meshes in (floor, [floor], (floor,), (mesh for mesh in [floor])):
+        assert pulsecast.Simulation(survey, meshes=meshes).triangles == 2
+    assert pulsecast.Simulation(survey, meshes=None).triangles == 0
+    assert pulsecast.RaycastingScene(floor).with_meshes(floor).memory > 0
+    for wrong in (["tree.obj"], "tree.obj", 3, [[floor]]):
+        with pytest.raises(TypeError, match="^meshes: expected a Mesh or several, not .*; files are parts of the survey's scene$"):
+            pulsecast.Simulation(survey, meshes=wrong)
+    with pytest.raises(TypeError, match="^Mesh vertices: expected numbers, not "):
+        pulsecast.Mesh([[0, 0, 0], [1, 0]], [[0, 1, 2]])
+    with pytest.raises(TypeError, match="^Simulation seed: expected a whole number, not 'x'$"):
+        pulsecast.Simulation(survey, seed="x")
+
+
+def test_settings_are_told_by_what_they_are_not_by_default():
+    survey = flight(*LINE)
+    assert repr(pulsecast.SurveySettings()) == "SurveySettings()"
+    assert repr(pulsecast.LegPlatformSettings(speed=3.5)) == "LegPlatformSettings(speed=3.5)"
+    assert eval(repr(survey), vars(pulsecast)) == survey and "SurveySettings(name='line', scanner=ScannerSettings(id='line'" in repr(survey)
+    with pytest.raises(TypeError) as refused:
+        pulsecast.write_survey(pulsecast.SurveySettings(name="line"), "swapped.xml")
+    assert len(str(refused.value)) < 300
+
+
+def test_what_is_no_obj_file_is_told(tmp_path):
+    (tmp_path / "a.gltf").write_text('{"asset": {"version": "2.0"}}')
+    survey = flight(*LINE)
+    survey.scene.parts = [pulsecast.PartSettings(source=pulsecast.ObjSource(files=[str(tmp_path / "a.gltf")]))]
+    with pytest.raises(pulsecast.FileError, match=r"a\.gltf: holds no vertex: expected an OBJ file"):
+        pulsecast.Simulation(survey)
+
+
+@pytest.mark.parametrize("asked", ["--version", "doctor"])
+def test_the_program_starts_without_numpy(asked, tmp_path):
+    (tmp_path / "numpy.py").write_text("raise ImportError")
+    without = {**os.environ, "PYTHONPATH": f"{tmp_path}:{os.environ['PYTHONPATH']}"}
+    run = subprocess.run([sys.executable, "-m", "pulsecast", asked], env=without, capture_output=True, text=True)
+    assert run.returncode == 0 and pulsecast.__version__ in run.stdout and not run.stderr
+    run = subprocess.run([sys.executable, "-c", "import pulsecast"], env=without, capture_output=True, text=True)
+    assert run.returncode == 1 and "ImportError: pulsecast needs NumPy" in run.stderr
+
+
 # ----------------------------------------------------------------------------------------------------------------- page
 
 def test_the_examples_of_the_page_run():
@@ -379,4 +498,6 @@ def test_the_examples_of_the_page_run():
     space: dict[str, object] = {}
     for block in blocks:
         exec(block, space)  # each goes on from those before
+        if block is blocks[0]:
+            assert set(space["points"]["object"]) == {0, 1, 2, 3}  # as it says
     assert len(space["points"]) > 1000

@@ -184,7 +184,7 @@ def test_settings_have_the_limits_and_notes_of_a_document(survey, tmp_path):
     with pytest.warns(UserWarning) as notes:
         simulation(survey)
     for says in ("leg 0: pulseFreq_hz of 123 Hz is not one of", "leg 0: headRotatePerSec_deg exceeds the scanner's maximum",
-                 "leg 0: headRotateStop_deg is 20626.480625, 57.29578 turns of the head: given in degrees, not radians?"):
+                 "leg 0: headRotateStop_deg is 20626.480625, 57.29578 turns: given in degrees, not radians?"):
         assert any(says in str(note.message) for note in notes), says
     survey.legs[0].scanner.vertical_angle_min, survey.legs[0].scanner.vertical_angle_max = -40, 60
     for refused in (simulation, pulsecast.xml_text, lambda s: pulsecast.write_survey(tmp_path / "no.xml", s)):
@@ -273,8 +273,10 @@ def test_hits_have_the_attributes_of_their_objects():
 
 def test_an_attribute_of_the_name_of_a_column_is_refused(survey):
     mesh = pulsecast.Mesh(*SQUARE, object=9, attributes={"intensity": 4})
-    with pytest.raises(pulsecast.SettingError, match="intensity"):
+    with pytest.raises(pulsecast.SettingError, match="^columns: 'intensity' is there twice: expected .* attributes without the name of a column$"):
         simulation(survey, meshes=[mesh]).run()
+    with pytest.raises(pulsecast.SettingError, match="^columns: 'range' is there twice"):
+        simulation(survey).run(columns=["range", "x", "range"])
 
 
 def test_points_by_column_are_those_of_the_rows(survey):

@@ -165,6 +165,8 @@ def test_others_run_while_files_are_written(tmp_path):
     ("a.foo", {}, ValueError, r"output '.*a\.foo': expected a name that ends in \.xyz, .*\.copc\.laz, .*\.html, \.geojson or \.png, or format="),
     ("a.foo", {"format": "e57"}, ValueError, "format 'e57': expected xyz, .* or ptx"),
     ("a.laz", {"las_scal": 1}, ValueError, r"las_scal is no option of files; did you mean 'las_scale'\?"),
+    ("a.laz", {"lasScale": 1}, ValueError, r"^lasScale is no option of files; did you mean 'las_scale'\?$"),
+    ("a.laz", {"columns": ["azimuth", "range", "azimuth"]}, ValueError, "'azimuth'.* is there twice"),
     ("a.laz", {"seed": 1}, ValueError, r"seed is no option of files"),
     ("a.laz", {"las_scale": 0}, ValueError, r"las_scale: '0': expected a length from 1e-9 to 1000 m"),
     ("a.kitti", {"columns": ["range"]}, ValueError, r"columns and format kitti: it has no further columns: expected format xyz, "),

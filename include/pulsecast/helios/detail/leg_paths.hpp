@@ -36,11 +36,17 @@ namespace PULSECAST_NAMESPACE::helios {
 [[nodiscard]] inline io::TrajectoryTable poses_within(std::vector<TimedPose> poses, const TrajectorySettings& window) {
   const Waypoints path(poses);
   const double first = poses.front().time, last = poses.back().time;
-  const double start = std::max(first, window.start.value_or(first)), end = std::min(last, window.end.value_or(last));
+  const double from = window.start.value_or(first), to = window.end.value_or(last);
+  const double start = std::max(first, from), end = std::min(last, to);
+  const auto seconds = [](double time) { return text::to_text(time) + " s"; };
   if (!(start <= end))
-    throw SettingError(
-        "tStart to tEnd (end)", end, "s",
-        text::joined({"within the poses, from ", text::to_text(first), " s to ", text::to_text(last), " s"}));
+    throw SettingError("tStart to tEnd",
+                       text::joined({" is from ", seconds(from), " to ", seconds(to),
+                                     ", but must be within the poses, from ", seconds(first), " to ", seconds(last)}));
+  io::TrajectoryTable table{.start_time = start, .poses = {}, .warnings = {}};
+  const std::string name = window.file.string() + ": the window ";
+  if (from < first) table.warnings.push_back(name + "begins before the first pose, at " + seconds(first));
+  if (to > last) table.warnings.push_back(name + "ends after the last pose, at " + seconds(last));
   const auto at = [&](double time) {
     const Pose<frame::Body, frame::World> pose = path.at(Tick::of_seconds(time));
     return TimedPose{time, pose.position, pose.rotation};
@@ -49,7 +55,8 @@ namespace PULSECAST_NAMESPACE::helios {
   poses.insert(poses.begin(), at(start));
   if (end > start) poses.push_back(at(end));
   for (TimedPose& pose : poses) pose.time -= start;
-  return {.start_time = start, .poses = std::move(poses), .warnings = {}};
+  table.poses = std::move(poses);
+  return table;
 }
 
 /// Path and duration of a leg.

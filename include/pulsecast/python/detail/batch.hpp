@@ -38,8 +38,9 @@ struct KeptData {
     std::vector<io::PointField> all = rows.fields;
     all.insert(all.end(), columns.fields.begin(), columns.fields.end());
     for (const io::PointField& field : all) {
-      const auto same = std::ranges::count(all, field.name, &io::PointField::name);
-      require_within("columns '" + field.name + "' (number)", same, 1, 1, "");
+      if (std::ranges::count(all, field.name, &io::PointField::name) > 1)
+        throw SettingError("columns: '" + field.name + "'",
+                           " is there twice: expected each once, and attributes without the name of a column");
     }
   }
 };

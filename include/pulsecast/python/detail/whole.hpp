@@ -19,8 +19,8 @@ struct ArgumentName {
   consteval ArgumentName(const char (&name)[size]) { std::copy_n(name, size, text); }  // NOLINT: is a text
 };
 
-/// Whole number as an argument of a bound function. One out of range is a `SettingError` that names it, where
-/// pybind11's own would list the signature of the function.
+/// Whole number as an argument of a bound function. One out of range is a `SettingError` that names it, and another
+/// type a `TypeError`, where pybind11's own would list the signature of the function.
 template <ArgumentName argument, class T = std::uint64_t>
 struct Whole {
   T value = 0;
@@ -37,11 +37,12 @@ struct [[gnu::visibility("hidden")]] type_caster<pulsecast::python::Whole<argume
   using Number = pulsecast::python::Whole<argument, T>;
   PYBIND11_TYPE_CASTER(Number, const_name("int"));
 
-  /// True for whole numbers alone.
+  /// @throws TypeError for all but whole numbers
   bool load(handle from, bool /*convert*/) {
     const auto number = reinterpret_steal<object>(PyIndex_Check(from.ptr()) ? PyNumber_Index(from.ptr()) : nullptr);
     PyErr_Clear();
-    if (!number) return false;
+    if (!number)
+      throw type_error(std::string(argument.text) + ": expected a whole number, not " + std::string(repr(from)));
     using Limits = std::numeric_limits<T>;
     if (number < int_(Limits::min()) || number > int_(Limits::max())) {
       const double rounded = PyLong_AsDouble(number.ptr());

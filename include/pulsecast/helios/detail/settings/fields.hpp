@@ -21,7 +21,8 @@ namespace PULSECAST_NAMESPACE::helios {
 struct XmlUnit {
   const char* symbol = "";  ///< for messages
   double factor = 1;
-  double divisor = 1;  ///< makes 0.25 ns the number nearest to 0.25e-9 s
+  double divisor = 1;    ///< makes 0.25 ns the number nearest to 0.25e-9 s
+  double usual_max = 0;  ///< SI value beyond which a program may have taken another unit; 0: none
 
   [[nodiscard]] double si(double number) const noexcept { return number * factor / divisor; }
 
@@ -51,8 +52,9 @@ namespace units {
 inline constexpr double deg = std::numbers::pi / 180;
 inline constexpr XmlUnit one{}, metre{"m"}, square_metre{"m^2"}, per_metre{"1/m"}, per_metre_steradian{"1/(m sr)"},
     second{"s"}, hertz{"Hz"}, radian{"rad"}, watt{"W"}, metre_per_second{"m/s"}, millimetre_per_hour{"mm/h"};
-inline constexpr XmlUnit degree{"deg", deg}, degree_per_second{"deg/s", deg}, kilometre{"km", 1e3},
-    nanosecond{"ns", 1, 1e9}, nanometre{"nm", 1, 1e9}, nanowatt{"nW", 1, 1e9}, degree_hertz{"deg Hz", deg};
+inline constexpr XmlUnit degree{"deg", deg}, small_degree{"deg", deg, 1, 0.5}, degree_per_second{"deg/s", deg},
+    kilometre{"km", 1e3}, nanosecond{"ns", 1, 1e9}, nanometre{"nm", 1, 1e9}, nanowatt{"nW", 1, 1e9},
+    degree_hertz{"deg Hz", deg};
 }  // namespace units
 
 /// True for an angle beyond a turn that is whole in radians, as if given in degrees [rad].
@@ -204,6 +206,15 @@ class FieldIo {
     if (reads() && found == found) value = found;  // NaN: was not given
   }
 };
+
+/// Asks about an angle that is whole in radians and beyond a turn, or that a program gives and that is unusual [rad].
+inline void ask_for_degrees(const FieldIo& io, const char* name, double angle, const XmlUnit& unit) {
+  const bool is_unusual = unit.usual_max > 0 && std::fabs(angle) > unit.usual_max && !io.reads();
+  if (std::string_view(unit.symbol) != "deg" || !(is_unusual || looks_like_degrees(angle))) return;
+  const auto brief = [](double value) { return xml_number(std::round(value * 1e6) / 1e6); };
+  io.warn(name, text::joined({name, " is ", brief(degrees(angle)), ", ", brief(angle / (2 * pi)),
+                              " turns: given in degrees, not radians?"}));
+}
 
 /// `name="text"`, for messages.
 [[nodiscard]] inline std::string said(std::string_view name, std::string_view text) {

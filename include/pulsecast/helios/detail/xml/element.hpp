@@ -75,7 +75,11 @@ class XmlInput final : public FieldIo {
     const auto text = value(name);
     if (!text) return;
     const auto found = number_of(*text);
-    if (found && *found >= low && *found <= high) return void(v = unit.si(*found));
+    if (found && *found >= low && *found <= high) {
+      v = unit.si(*found);
+      ask_for_degrees(*this, name, v, unit);
+      return;
+    }
     std::string allowed = low == -any ? "" : " from " + xml_number(low);
     if (high < std::numeric_limits<double>::max()) allowed += " to " + xml_number(high);
     fault(name, said(name, *text) + ": expected a number" + allowed + (*unit.symbol == 0 ? "" : " ") + unit.symbol);

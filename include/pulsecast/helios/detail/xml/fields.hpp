@@ -41,7 +41,15 @@ inline void noise_fields(FieldIo& io, PlatformSettings& platform) {
       io.element(name, [&](FieldIo& inner) { (io.reads() ? noise.emplace() : *noise).fields(inner); });
   };
   for (std::size_t i = 0; i < 3; ++i) one(position[i], platform.position_noise[i]);
-  for (std::size_t i = 0; i < 3; ++i) one(attitude[i], platform.attitude_noise[i]);
+  for (std::size_t i = 0; i < 3; ++i) {
+    one(attitude[i], platform.attitude_noise[i]);
+    if (const auto& noise = platform.attitude_noise[i])
+      ask_for_degrees(io, attitude[i],
+                      noise->distribution == NoiseDistribution::normal
+                          ? std::max(std::fabs(noise->mean), noise->deviation)
+                          : std::max(std::fabs(noise->low), std::fabs(noise->high)),
+                      units::small_degree);
+  }
   if (io.reads() || platform.mount_error != MountErrorSettings{})
     io.element("mountError", [&](FieldIo& inner) { platform.mount_error.fields(inner); });
   if (io.reads() || platform.pose_errors != PoseErrorSettings{})

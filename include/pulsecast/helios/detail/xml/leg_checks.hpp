@@ -146,10 +146,7 @@ class LegChecks {
     const double speed = head_rate(device, s);
     for (const auto& [name, angle] :
          {std::pair("headRotateStart_deg", s.head_start), std::pair("headRotateStop_deg", s.head_stop)})
-      if (looks_like_degrees(angle))
-        io.warn(name, text::joined({name, " is ", brief(degrees(angle)), ", ", brief(angle / (2 * pi)),
-                                    " turns of the head: given in degrees, not radians?"}));
-      else if (looks_like_radians(angle, true))
+      if (looks_like_radians(angle, true))
         io.warn(name, text::joined({name, " is ", shortest(angle), ": given in radians, not degrees?"}));
     if (s.head_rate != speed)
       io.warn("headRotatePerSec_deg",

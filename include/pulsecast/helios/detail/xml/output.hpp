@@ -21,6 +21,7 @@ class XmlOutput final : public FieldCheck {
   void number(const char* name, double& v, const XmlUnit& unit, double low, double high) override {
     const double number = document_number(name, v, unit, low, high);
     if (std::isfinite(v)) put(name, xml_number(number), "double");
+    ask_for_degrees(*this, name, v, unit);
   }
   void whole(const char* name, int& value, int low, int high) override {
     FieldCheck::whole(name, value, low, high);

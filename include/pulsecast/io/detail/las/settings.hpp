@@ -143,10 +143,10 @@ struct LasSettings {
     for (auto extra = all.begin(); extra != all.end(); ++extra) {
       const std::string_view name = detail::las_cut(extra->name);
       const auto has_name = [&](auto& other) { return detail::las_cut(other.name) == name; };
-      if (name.empty() || std::any_of(all.begin(), extra, has_name))
-        throw SettingError(text::joined({"LasSettings, length of the name '", extra->name, "' of an extra value"}),
-                           static_cast<double>(name.size()), "bytes",
-                           "above 0, and names must differ in their first 31 bytes");
+      if (name.empty()) throw SettingError("LasSettings: the extra value ''", " has no name");
+      if (std::any_of(all.begin(), extra, has_name))
+        throw SettingError(text::joined({"LasSettings: the extra value '", extra->name, "'"}),
+                           " is there twice: expected names that differ in their first 31 bytes");
     }
   }
 };

@@ -24,6 +24,7 @@ class ObjReader {
   [[nodiscard]] ObjModel read() {
     while (read_window()) continue;
     notes_.tell(file_.path(), model_.warnings);
+    if (model_.mesh.vertices.empty()) file_.fail("holds no vertex: expected an OBJ file, with 'v' and 'f' statements");
     if (model_.mesh.triangles.empty())
       warn(0, "holds no face with an area: expected at least one 'f' statement of such a one");
     resolve_materials();
