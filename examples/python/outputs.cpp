@@ -400,13 +400,12 @@ class FileRun {
   RunSummary operator()(const RunOptions& options, const Sink& sink) const {
     if (!files_) return pulsecast::run(simulation_.survey(), options, sink);
     const std::function<void(const EchoBatch&)> to_batches = std::cref(sink);
-    return run(options, to_sink_ ? &to_batches : nullptr);
+    return pulsecast::run(simulation_.survey(), options, Both{*files_, to_sink_ ? &to_batches : nullptr});
   }
   /// Completes the files, after an interrupt, too. After an error of a callback it is not called: there is none.
   void close() const {
     if (files_) files_->close();
   }
-
   /// Warns of what files noted, and of a run of all slots, or of those of whole legs, without points.
   void after(const RunRequest& request, const RunSummary& summary) const {
     if (files_) files_->warn_of_notes();
@@ -428,10 +427,6 @@ class FileRun {
     }
     [[nodiscard]] bool reads_empty_shots() const noexcept { return to_batches || files.reads_empty_shots(); }
   };
-
-  RunSummary run(const RunOptions& options, const std::function<void(const EchoBatch&)>* to_batches) const {
-    return pulsecast::run(simulation_.survey(), options, Both{*files_, to_batches});
-  }
 
   const Simulation& simulation_;
   std::shared_ptr<RunFiles> files_;
