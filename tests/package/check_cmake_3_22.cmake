@@ -6,7 +6,7 @@
 cmake_minimum_required(VERSION 3.25)
 
 # Source: "cmake --help-command-list" of 3.22, those that package files have a use for.
-set(commands add_library break cmake_policy continue else elseif endforeach endfunction endif endmacro endwhile file find_dependency find_library
+set(commands add_library break cmake_policy continue else elseif endforeach endfunction endif endmacro endwhile file find_dependency find_library find_path
              find_package foreach function get_filename_component get_property get_target_property if include include_guard list macro
              mark_as_advanced math message return set set_property set_target_properties string target_compile_definitions
              target_include_directories target_link_libraries target_sources unset while)

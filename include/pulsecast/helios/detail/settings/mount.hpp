@@ -34,7 +34,7 @@ struct RotationList {
   /// Product of all rotations.
   [[nodiscard]] Rotation rotation() const {
     Rotation all = no_rotation;  // not `extrinsic`: documents may have many turns
-    constexpr std::array axes{axis::right, axis::forward, axis::up};
+    const std::array axes{axis::right, axis::forward, axis::up};
     for (const AxisTurn& turn : turns) {
       require_finite("angle_deg", degrees(turn.angle), "deg");
       const Rotation next = rotation_about(axes[static_cast<std::size_t>(turn.axis)], turn.angle);

@@ -75,8 +75,8 @@ struct RisleyOptic {
 
 /// Any optic, and the default of each.
 using OpticSettings = std::variant<OscillatingOptic, RotatingOptic, ConicOptic, LineOptic, RisleyOptic>;
-inline constexpr std::array<OpticSettings, 5> default_optics{OscillatingOptic{}, RotatingOptic{}, ConicOptic{},
-                                                             LineOptic{}, RisleyOptic{}};
+inline const std::array<OpticSettings, 5> default_optics{OscillatingOptic{}, RotatingOptic{}, ConicOptic{}, LineOptic{},
+                                                         RisleyOptic{}};
 
 /// Sampling of waveforms: `<FWFSettings>`.
 struct FullWaveformSettings {
