@@ -409,10 +409,11 @@ class FileRun {
   /// Warns of what files noted, and of a run of all slots, or of those of whole legs, without points.
   void after(const RunRequest& request, const RunSummary& summary) const {
     if (files_) files_->warn_of_notes();
+    if (summary.echoes > 0 || request.stride > 1) return;
     const auto& legs = simulation_.compiled().legs;
     const bool begins = request.first == 0 || std::ranges::count(legs, request.first, &CompiledLeg::first) > 0;
     const bool ends = !request.end || std::ranges::count(legs, *request.end, &CompiledLeg::end) > 0;
-    if (summary.echoes > 0 || request.stride > 1 || !begins || !ends) return;
+    if (!begins || !ends) return;
     if (const std::string why = why_no_points(simulation_, summary, request.first); !why.empty()) warn({why});
   }
 

@@ -33,16 +33,17 @@ from ._degrees import add_degrees
 
 __all__ = [name for name in vars(_core) if not name.startswith("_")] + ["__version__", "asset_folders", "catalogue", "platform", "scanner"]
 
-for _made in vars(_core).values():
-    if dataclasses.is_dataclass(_made):
-        add_degrees(_made)
-        _made.__repr__ = lambda settings: _shortly(settings)
-
 
 def _shortly(settings):
     """Settings as text that makes them again: the members that differ from their defaults."""
     pairs = [(member.name, repr(getattr(settings, member.name)), repr(member.default_factory())) for member in dataclasses.fields(settings)]
     return f"{type(settings).__name__}({', '.join(f'{name}={value}' for name, value, default in pairs if value != default)})"
+
+
+for _made in vars(_core).values():
+    if dataclasses.is_dataclass(_made):
+        add_degrees(_made)
+        _made.__repr__ = _shortly
 
 
 def asset_folders() -> list[Path]:

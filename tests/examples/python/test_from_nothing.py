@@ -173,8 +173,9 @@ def test_documents_of_one_s_own_come_before_the_catalogue(tmp_path):
         (tmp_path / "data" / f"scanners_{name}.xml").write_text(text)
     assert pulsecast.scanner("vz400", assets=[tmp_path]).pulse_rates == [7] and pulsecast.scanner("vz400").pulse_rates != [7]
     assert pulsecast.scanner("own_one", assets=[str(tmp_path)]).pulse_rates == [9]
-    with pytest.raises(ValueError, match=r"no scanner 'ONE'; did you mean '(own|other)_one' or '(own|other)_one'\?"):  # of two makers
-        pulsecast.scanner("ONE", assets=[tmp_path])
+    for name in ("one", "ONE"):
+        with pytest.raises(ValueError, match=rf"no scanner '{name}'; did you mean '(own|other)_one' or '(own|other)_one'\?"):  # of two makers
+            pulsecast.scanner(name, assets=[tmp_path])
 
 
 def test_angles_are_also_in_degrees():
